@@ -6,8 +6,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
+#include <string>
 
 #include "common/files/atomic_file.hpp"
 
@@ -45,11 +47,22 @@ struct PngWriter {
   ~PngWriter() { png_destroy_write_struct(&png, &info); }
 };
 
+void say_software(const PngWriter& writer) {
+  std::string key = "Software", software = "palpate";
+  png_text text{};
+  text.compression = PNG_TEXT_COMPRESSION_NONE;
+  text.key = key.data();
+  text.text = software.data();
+  text.text_length = software.size();
+  png_set_text(writer.png, writer.info, &text, 1);
+}
+
 void encode(const Image& image, const std::filesystem::path& file, std::FILE* out) {
   const PngWriter writer(file);
   png_set_write_fn(writer.png, out, on_write, on_flush);
   png_set_IHDR(writer.png, writer.info, image.width, image.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  say_software(writer);
   png_set_compression_level(writer.png, 1);
   png_set_filter(writer.png, 0, PNG_FILTER_SUB);
   png_write_info(writer.png, writer.info);
@@ -75,6 +88,14 @@ void write_png(const Image& image, const std::filesystem::path& file) {
   encode(image, file, out.get());
   if (std::fclose(out.release()) != 0) fail(file, std::strerror(errno));
   whole.commit();
+}
+
+bool is_own_png(const std::filesystem::path& file) {
+  constexpr std::size_t kText = 8 + 25 + 4;  // behind the signature, the header and the text's length
+  const std::string_view said{"tEXtSoftware\0palpate", 20};
+  std::string head(kText + said.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head.starts_with("\x89PNG") && head.ends_with(said);
 }
 
 Image decode_png(std::string_view bytes, const std::filesystem::path& file) {

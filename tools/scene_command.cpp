@@ -79,7 +79,7 @@ void add_scene_command(cli::Command& app) {
                      fmt::format("What it is of (default: the mesh's name): {}", tissue_names()));
   command.add_option("--visual", o->visual,
                      "Surface that is drawn in place of the mesh's own, in metres or millimetres (.obj, with its .mtl "
-                     "and .png beside it; .stl)");
+                     "and .png beside it; .stl; a mesh's own of a .msh or .vtk)");
   command.add_option("--fixed", o->wishes.fixed, "Group of the mesh by which it is held").show_default();
   command.add_option("--radius", o->wishes.radius, "Radius of the probe's tip [m]").positive().show_default();
   command

@@ -1,12 +1,13 @@
 #include "tools/scene_for_mesh.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "common/mesh/group_names.hpp"
 #include "common/mesh/normals.hpp"
 #include "common/mesh/surface.hpp"
 #include "common/tool/devices/device_spec.hpp"
@@ -113,12 +114,10 @@ std::string trajectory_text(double depth, double press) {
 SceneTexts scene_for(const TetMesh& mesh, const std::string& mesh_name, const std::string& trajectory_name,
                      const Tissue& tissue, const SceneWishes& wishes) {
   const auto held = mesh.groups.find(wishes.fixed);
-  if (held == mesh.groups.end()) {
-    std::string names;
-    for (const auto& [name, group] : mesh.groups) names += (names.empty() ? "" : ", ") + name;
+  if (held == mesh.groups.end())
     throw std::runtime_error(
-        fmt::format("it has no group '{}' to hold the body by{}", wishes.fixed, names.empty() ? "" : ", but " + names));
-  }
+        fmt::format("it has no group '{}' to hold the body by{}", wishes.fixed,
+                    mesh.groups.empty() ? "" : fmt::format(", but {}", fmt::join(group_names(mesh.groups), ", "))));
   const Surface surface = extract_surface(mesh);
   const Spot spot = farthest_spot(mesh, surface, held->second.nodes);
   const double extent = extent_of(mesh, surface);

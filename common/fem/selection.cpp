@@ -1,9 +1,11 @@
 #include "common/fem/selection.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <stdexcept>
+
+#include "common/mesh/group_names.hpp"
 
 namespace palpate {
 namespace {
@@ -13,10 +15,9 @@ using Groups = std::map<std::string, MeshGroup>;
 const MeshGroup& find_group(const Groups& groups, const std::string& name, const std::string& where) {
   const auto found = groups.find(name);
   if (found != groups.end()) return found->second;
-  std::string known;
-  for (const auto& [group, members] : groups) known += (known.empty() ? "" : ", ") + group;
-  throw std::runtime_error(fmt::format("{}: the mesh has no group '{}' ({})", where, name,
-                                       known.empty() ? "it has no groups" : "it has " + known));
+  throw std::runtime_error(fmt::format(
+      "{}: the mesh has no group '{}' ({})", where, name,
+      groups.empty() ? "it has no groups" : fmt::format("it has {}", fmt::join(group_names(groups), ", "))));
 }
 
 bool contains(const Box& box, const Eigen::Vector3d& point) {

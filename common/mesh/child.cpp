@@ -98,7 +98,7 @@ std::string run_in_child(const std::function<std::string()>& work) {
   while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) throw std::runtime_error("the reader's process was lost");
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw std::runtime_error(how_it_ended(status));
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw ChildDied(how_it_ended(status));
   const std::string answer = read_all(answer_file.number);
   if (answer.empty()) throw std::runtime_error("the reader ended without an answer");
   if (answer[0] == '!') throw std::runtime_error(answer.substr(1));

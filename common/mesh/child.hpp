@@ -7,11 +7,16 @@
 
 namespace palpate {
 
+/// A child that crashed or ran out of its limits. Its message says which.
+struct ChildDied : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Runs `work` in a forked copy of this process and returns the bytes that it returned. The copy's terminal
 /// output is discarded and its processor time is limited, so a library that prints, keeps global state,
 /// crashes or loops for ever on a hostile file does none of that to this process.
-/// Throws std::runtime_error with the message that `work` threw (std::exception or std::string); a crash
-/// reads "the reader crashed (signal N)" and so on, in words. Call it at set-up, not while realtime threads
+/// Throws std::runtime_error with the message that `work` threw (std::exception or std::string); of a crash ChildDied,
+/// "the reader crashed (signal N)" and so on, in words. Call it at set-up, not while realtime threads
 /// run.
 std::string run_in_child(const std::function<std::string()>& work);
 

@@ -2,7 +2,6 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -17,6 +16,7 @@ struct GreyPhantom {
   Eigen::Vector3d voxel_mm{0.9, 0.9, 1.2};
   double neck_mm = 2.5;  ///< its radius
   double noise = 12;     ///< [grey] beside 60 between organ and surroundings
+  double shading = 0;    ///< [1] by which one end along y is brighter, and the other one darker
 
   Eigen::Vector3d place_mm(const Eigen::Vector3d& voxels) const { return voxels.cwiseProduct(voxel_mm); }
   Eigen::Vector3d middle_mm() const { return {0.4 * x * voxel_mm.x(), 0.5 * y * voxel_mm.y(), 0.5 * z * voxel_mm.z()}; }
@@ -65,14 +65,10 @@ struct GreyPhantom {
 
   std::vector<std::int16_t> grey() const {
     std::vector<std::int16_t> values;
-    std::uint64_t state = 12345;
-    const auto even = [&] {  // 0 to 1
-      state = state * 6364136223846793005u + 1442695040888963407u;
-      return (static_cast<double>(state >> 11) + 1) / 9007199254740993.0;
-    };
+    BellNoise bell;
     each([&](const Eigen::Vector3d& v) {
-      const double bell = std::sqrt(-2 * std::log(even())) * std::cos(2 * std::numbers::pi * even());
-      values.push_back(static_cast<std::int16_t>(std::lround(grey_of(v) + noise * bell)));
+      const double shade = 1 + shading * (2 * v.y() / y - 1);
+      values.push_back(static_cast<std::int16_t>(std::lround(shade * grey_of(v) + noise * bell())));
     });
     return values;
   }

@@ -142,6 +142,30 @@ TEST_F(LabelImages, ASliceThatIsCutShortOrUnlikeTheOthersIsRefusedByItsName) {
   expect_refused(with("1\\0\\0\\0\\1\\0", "0\\1\\0\\1\\0\\0"), "its slice slice2 lies otherwise than the first one");
 }
 
+TEST_F(LabelImages, ASliceThatIsCutWithinItsHeaderIsRefused) {
+  const std::filesystem::path folder = folder_ / "cut-header";
+  std::filesystem::create_directories(folder);
+  const auto bytes_of = [&](int n) { return DicomPicture("1.2.3.4", n, 3 * n, 3, voxels_.substr(0, 6)).bytes(); };
+  for (int n = 0; n < 5; ++n) write_file(folder / ("slice" + std::to_string(n)), bytes_of(n));
+  const std::string whole = bytes_of(2);
+  int named = 0;
+  for (std::size_t size = 100; size < whole.size() - 6; size += 9) {
+    write_file(folder / "slice2", whole.substr(0, size));
+    try {
+      read_label_volume(folder);
+      ADD_FAILURE() << "read, cut to " << size << " bytes of " << whole.size();
+    } catch (const std::runtime_error& error) {
+      const std::string said = error.what();
+      const bool names = said.find("its slice slice2 cannot be read: its header is cut short") != std::string::npos;
+      EXPECT_TRUE(names || said.find("its slice slice2 ends before") != std::string::npos ||
+                  said.find("1 slice is missing between (10, 20, 3) mm and (10, 20, 9) mm") != std::string::npos)
+          << size << " bytes: " << said;
+      named += names;
+    }
+  }
+  EXPECT_GT(named, 3);
+}
+
 TEST(SlicePlaces, SlicesOfATiltedScannerLieAslantAndAreRefused) {
   const auto stack = [](double aside) {
     SlicePlaces slices{{}, Eigen::Vector3d::UnitZ(), 0.8};

@@ -211,6 +211,8 @@ TEST_F(MeshCommand, MistakesAreToldInASentence) {
   const std::string to = " -o " + (folder_ / "a.msh").string();
   expect_refusal(program("palpate") + " mesh " + file + " --group held=near:z" + to,
                  {"--group held=near:z", "NAME=PLACE"});
+  const std::string twice = program("palpate") + " mesh nowhere.stl --group held=below:z --group held=above:z";
+  expect_refusal(twice + to, {"--group held=above:z: there are two groups of that name"});  // before anything is read
   for (const char* name : {R"(a\"b)", R"(a\\b)", "a\nb"})  // as a shell has them in quotes
     expect_refusal(fmt::format("{} mesh {} --group \"{}=below:z\"{}", program("palpate"), file, name, to),
                    {"--group a", "a name has no quotes, backslashes or control characters"});

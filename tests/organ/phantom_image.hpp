@@ -2,10 +2,27 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <fstream>
+#include <numbers>
 #include <string>
 
 namespace palpate::testing {
+
+/// Numbers of a normal distribution of deviation 1, the same each time.
+class BellNoise {
+ public:
+  double operator()() { return std::sqrt(-2 * std::log(even())) * std::cos(2 * std::numbers::pi * even()); }
+
+ private:
+  std::uint64_t state_ = 12345;
+
+  double even() {  // 0 to 1
+    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+    return (static_cast<double>(state_ >> 11) + 1) / 9007199254740993.0;
+  }
+};
 
 /// The first 256 bytes of an INR image.
 inline std::string inr_header(const std::array<int, 3>& count, const std::array<double, 3>& voxel_mm,

@@ -7,6 +7,7 @@
 
 #include "common/contact/tool_contacts.hpp"
 #include "common/files/ending.hpp"
+#include "common/mesh/group_names.hpp"
 #include "common/mesh/measures.hpp"
 #include "common/mesh/mesh_file.hpp"
 #include "common/models/check/surface_check.hpp"
@@ -18,22 +19,10 @@
 namespace palpate {
 namespace {
 
-/// A mesh file's groups go by a number, and most by a name too: a number says nothing beside the name.
-bool is_number_of_another(const TetMesh& mesh, const std::string& name) {
-  const auto& numbered = mesh.groups.at(name);
-  const auto is_same = [&](const auto& other) {
-    return other.first != name && other.second.nodes == numbered.nodes &&
-           other.second.tetrahedra == numbered.tetrahedra;
-  };
-  return name.find_first_not_of("0123456789") == std::string::npos && std::ranges::any_of(mesh.groups, is_same);
-}
-
 void say_groups(const TetMesh& mesh, CheckOutput& out) {
   std::string names;
-  for (const auto& [name, group] : mesh.groups) {
-    if (is_number_of_another(mesh, name)) continue;
-    names += fmt::format("{}'{}' with {} nodes", names.empty() ? "" : ", ", name, group.nodes.size());
-  }
+  for (const std::string& name : group_names(mesh.groups))
+    names += fmt::format("{}'{}' with {} nodes", names.empty() ? "" : ", ", name, mesh.groups.at(name).nodes.size());
   out.say("  groups: " + (names.empty() ? "none" : names));
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace palpate {
 namespace {
@@ -12,7 +13,7 @@ constexpr double kStill = 0.02;                   // [voxels] that no point move
 constexpr double kSample = 0.25;                  // [voxels] along the normal
 constexpr double kAcross = 1;                     // [voxels] to both sides of an edge
 constexpr double kOfNoise = 5;                    // deviations of the organ's grey that an edge rises by
-constexpr double kHeld = 0.05;                    // pull of a point to where it is, beside that of an edge
+constexpr double kHeld = 0.05;                    // pull of a point to where it started, beside that of an edge
 
 /// Grey values of one slice, between voxels evenly.
 class Slice {
@@ -40,43 +41,54 @@ struct Edge {
   bool found = false;
 };
 
-/// The steepest rise of the difference to the organ's grey, nearer ones before those that are as steep.
+/// The steepest change that leads outward away from the organ's grey, nearer ones before those that are as steep.
 Edge edge_along(const Slice& slice, const Eigen::Vector2d& x, const Eigen::Vector2d& step, const GreyLevel& level,
                 double reach) {
   const auto off = [&](double s) {
     const Eigen::Vector2d p = x + s * step;
-    return std::abs(slice.at(p.x(), p.y()) - level.median);
+    return slice.at(p.x(), p.y()) - level.median;
+  };
+  const auto counted = [&](double s) {
+    const double inner = off(s - kAcross), outer = off(s + kAcross), far = s / reach;
+    return std::abs(outer) > std::abs(inner) ? std::abs(outer - inner) * (1 - 0.3 * far * far) : 0;
   };
   const int samples = static_cast<int>(reach / kSample);
   Edge best;
   double steepest = kOfNoise * level.deviation;
   for (int i = -samples; i <= samples; ++i) {
-    const double s = i * kSample, rise = off(s + kAcross) - off(s - kAcross);
-    const double counted = rise * (1 - 0.3 * std::abs(s) / reach);
-    if (counted <= steepest) continue;
-    steepest = counted;
-    best = {s, true};
+    const double rise = counted(i * kSample);
+    if (rise <= steepest) continue;
+    steepest = rise;
+    best = {i * kSample, true};
   }
+  if (!best.found) return best;
+  const double before = counted(best.at - kSample), after = counted(best.at + kSample);
+  const double bend = before - 2 * steepest + after;  // of the parabola through the three
+  if (bend < 0) best.at += kSample * std::clamp(0.5 * (before - after) / bend, -1.0, 1.0);
   return best;
 }
 
-/// Minimises pull (x - target)^2 + stiffness |x'' |^2 over a closed line of even points.
+/// Minimises pull (x - target)^2 + stiffness |x'' - that of an ellipse|^2 over a closed line of even points; so that a
+/// line without edges does not shrink.
 class LineBending {
  public:
   explicit LineBending(double stiffness) : stiffness_(stiffness) {}
 
   Eigen::MatrixX2d solve(const Eigen::VectorXd& pull, const Eigen::MatrixX2d& target) {
     const int n = static_cast<int>(pull.size());
+    const double turn = std::cos(2 * std::numbers::pi / n);  // x[i-1] - 2 turn x[i] + x[i+1] is 0 of an ellipse
+    const double stencil[]{1, -4 * turn, 2 + 4 * turn * turn, -4 * turn, 1};
     std::vector<Eigen::Triplet<double>> entries;
-    constexpr double kStencil[]{1, -4, 6, -4, 1};
     for (int i = 0; i < n; ++i) {
       entries.emplace_back(i, i, pull[i]);
-      for (int d = -2; d <= 2; ++d) entries.emplace_back(i, (i + d + n) % n, stiffness_ * kStencil[d + 2]);
+      for (int d = -2; d <= 2; ++d) entries.emplace_back(i, (i + d + n) % n, stiffness_ * stencil[d + 2]);
     }
     Eigen::SparseMatrix<double> matrix(n, n);
     matrix.setFromTriplets(entries.begin(), entries.end());
     solver_.compute(matrix);
-    return solver_.solve(pull.asDiagonal() * target);
+    const Eigen::RowVector2d middle = target.colwise().mean();
+    const Eigen::MatrixX2d around = solver_.solve(pull.asDiagonal() * (target.rowwise() - middle));
+    return around.rowwise() + middle;
   }
 
  private:
@@ -110,9 +122,11 @@ MovedContour move_to_edges(const Contour& start, const ScalarGrid& grey, int k, 
     for (int i = 0; i < n; ++i) {
       const Eigen::Vector2d outward = normal_step(moved.line, i, voxel);
       const Edge edge = edge_along(slice, moved.line[i], outward, level, forces.reach);
-      if (edge.found) pull[i] = 1;
+      target.row(i) = first[i];
+      if (!edge.found) continue;
+      pull[i] = 1;
       const Eigen::Vector2d away = moved.line[i] + edge.at * outward - first[i];
-      target.row(i) = first[i] + std::min(1.0, forces.reach / std::max(away.norm(), 1e-9)) * away;
+      target.row(i) += std::min(1.0, forces.reach / std::max(away.norm(), 1e-9)) * away;
     }
     moved.on_edge = static_cast<double>((pull.array() == 1).count()) / n;
     const Eigen::MatrixX2d x = bending.solve(pull, target);

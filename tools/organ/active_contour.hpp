@@ -8,7 +8,7 @@ namespace palpate {
 struct ContourForces {
   double reach =
       3;  ///< [voxels] from where a point starts, within which it is drawn to an edge along the normal; 0: it stays
-  double stiffness = 1;  ///< against bending; 1: a wave of six voxels is halved
+  double stiffness = 1;  ///< against bending other than an ellipse's; 1: a wave of six voxels is halved
 };
 
 struct MovedContour {
@@ -18,9 +18,9 @@ struct MovedContour {
 
 /// An active contour (Kass, Witkin and Terzopoulos, Int. J. Computer Vision 1, 1988; TVCG99 sec. 2-1) in slice `k` of
 /// smoothed grey values: each point is drawn to where, along its normal, the values leave the organ's `level` the
-/// fastest, points without such an edge in reach are held by the bending of the line alone, which is solved for all
-/// points at once; so a line does not creep through a gap. Ends when nothing moves, or after some dozen steps. Small
-/// contours stay as they are.
+/// fastest, points without such an edge in reach are held by the bending of the line and, weakly, where they started,
+/// which is solved for all points at once; so a line does not creep through a gap. Ends when nothing moves, or after
+/// some dozen steps. Small contours stay as they are.
 MovedContour move_to_edges(const Contour& start, const ScalarGrid& grey, int k, const GreyLevel& level,
                            const ContourForces& forces);
 

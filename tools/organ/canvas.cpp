@@ -64,10 +64,4 @@ Image side_by_side(const Image& left, const Image& right) {
   return both;
 }
 
-void make_picture_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw std::runtime_error(fmt::format("{}: {}", folder.string(), error.message()));
-}
-
 }  // namespace palpate

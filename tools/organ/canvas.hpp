@@ -27,7 +27,4 @@ class Canvas {
 /// Two pictures of one height side by side.
 Image side_by_side(const Image& left, const Image& right);
 
-/// The folder for pictures, made where it is not there. Throws std::runtime_error("FOLDER: reason").
-void make_picture_folder(const std::filesystem::path& folder);
-
 }  // namespace palpate

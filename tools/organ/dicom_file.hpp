@@ -7,4 +7,7 @@ namespace palpate {
 /// std::runtime_error(reason) where its header cannot be read.
 bool dicom_is_whole(const std::string& file);
 
+/// Throws std::runtime_error: the header of this slice is cut short or damaged.
+[[noreturn]] void refuse_header(const std::string& file);
+
 }  // namespace palpate

@@ -133,7 +133,7 @@ MeshFineness fineness_of(const MeshOptions& o) {
   check_folder_of(o.output);
   check_folder_of(o.report);
   for (const std::string& text : o.fine) f.fine.push_back(parse_fine_place(text));
-  for (const std::string& text : o.groups) check_group(text);
+  check_groups(o.groups);
   if (o.tool_radius > 0 && o.groups.empty())
     throw std::runtime_error("--tool-radius needs a --group: the tool comes to the side that lies farthest from it");
   if (!o.scene.empty()) load_scene(o.scene);  // what cannot be read is told before the organ is

@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kAround = 2;            // [voxels] to each side of a seed
 constexpr double kTold = 4;           // deviations that are still the organ's
-constexpr double kShell = 3;          // [voxels] around the organ, without the first, whose values are between
+constexpr double kNear = 2;           // [voxels] from a border within which smoothed values are between its two sides'
+constexpr double kShell = 4;          // [voxels] around the organ, without those, whose values are its surroundings'
 constexpr int kEnough = 20;           // voxels from which a median is taken
 constexpr double kOfNormal = 1.4826;  // deviation of a normal distribution, in median distances to its median
 
@@ -51,17 +52,21 @@ std::vector<char> in_range(const ScalarGrid& grey, const GreyRange& range) {
   return inside;
 }
 
-/// Puts the range's ends midway to the medians of what is darker and brighter around the region.
+/// Puts the range's ends midway to the medians of what is darker and brighter around the region; where there is one of
+/// the two alone, the other end is as far from the organ's grey: nothing there needs a sharper one.
 void widen_to_surroundings(const ScalarGrid& grey, const std::vector<char>& inside, double median, GreyRange& range) {
   const DistanceGrid distance = distance_to_border(grey.shape, inside);
   const double voxel = grey.shape.spacing.mean();
   std::vector<float> darker, brighter;
   for (std::size_t i = 0; i < inside.size(); ++i) {
-    if (distance.value[i] < voxel || distance.value[i] > kShell * voxel || range.holds(grey.value[i])) continue;
+    if (distance.value[i] < kNear * voxel || distance.value[i] > kShell * voxel || range.holds(grey.value[i])) continue;
     (grey.value[i] < median ? darker : brighter).push_back(grey.value[i]);
   }
-  if (darker.size() >= kEnough) range.low = 0.5 * (median + median_of(darker));
-  if (brighter.size() >= kEnough) range.high = 0.5 * (median + median_of(brighter));
+  const bool low = darker.size() >= kEnough, high = brighter.size() >= kEnough;
+  if (low) range.low = 0.5 * (median + median_of(darker));
+  if (high) range.high = 0.5 * (median + median_of(brighter));
+  if (low && !high) range.high = std::max(range.high, 2 * median - range.low);
+  if (high && !low) range.low = std::min(range.low, 2 * median - range.high);
 }
 
 std::string say_seed(const GridShape& shape, std::size_t seed) {
@@ -72,10 +77,18 @@ std::string say_seed(const GridShape& shape, std::size_t seed) {
 }  // namespace
 
 GreyLevel level_of(const ScalarGrid& grey, const std::vector<char>& inside) {
-  std::vector<float> values;
-  for (std::size_t i = 0; i < inside.size(); ++i)
-    if (inside[i]) values.push_back(grey.value[i]);
-  return level_of_values(values);
+  const DistanceGrid distance = distance_to_border(grey.shape, inside);
+  const auto deeper_than = [&](double depth) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < inside.size(); ++i)
+      if (inside[i] && distance.value[i] <= -depth) values.push_back(grey.value[i]);
+    return values;
+  };
+  const double near = kNear * grey.shape.spacing.mean();
+  for (const double depth : {near, 0.5 * near})
+    if (std::vector<float> values = deeper_than(depth); values.size() >= kEnough) return level_of_values(values);
+  std::vector<float> all = deeper_than(0);
+  return level_of_values(all);
 }
 
 GreyRange range_around(const ScalarGrid& grey, const std::vector<std::size_t>& seeds) {
@@ -108,7 +121,8 @@ std::vector<char> grow_region(const ScalarGrid& grey, const GreyRange& range, co
   for (const std::size_t seed : seeds)
     if (!core[seed])
       throw std::runtime_error(
-          fmt::format("{} lies {:.3g} mm deep, in a part thinner than --neck {:.3g} mm: take one deeper inside",
+          fmt::format("{} lies {:.3g} mm deep in its range, in a part thinner than --neck {:.3g} mm: take one deeper "
+                      "inside, or a wider --range",
                       say_seed(grey.shape, seed), -1e3 * depth.value[seed], 1e3 * neck));
   keep_pieces_with(grey.shape, core, seeds);
   const DistanceGrid from_core = distance_to_border(grey.shape, core);

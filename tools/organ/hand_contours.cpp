@@ -10,10 +10,13 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tools/organ/finding.hpp"
+
 namespace palpate {
 namespace {
 
-constexpr int kBetween = 8;    // points of the line from one of those drawn to the next
+constexpr int kBetween = 8;  // points of the line from one of those drawn to the next
+constexpr std::size_t kMostPoints = 2000;
 constexpr int kFurthest = 16;  // slices from one that is drawn to the next, for those in between to be drawn too
 
 template <class Number>
@@ -46,6 +49,29 @@ std::optional<int> take_line(const std::string& text, const GridShape& shape, Ha
   if (!line.empty() && line.back() == point) throw std::runtime_error("the same point twice");
   line.push_back(point);
   return slice;
+}
+
+/// Whether two lines cross within both.
+bool cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c, const Eigen::Vector2d& d) {
+  const auto side = [](const Eigen::Vector2d& p, const Eigen::Vector2d& q, const Eigen::Vector2d& r) {
+    return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
+  };
+  return side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0;
+}
+
+/// Throws std::runtime_error(reason).
+void check_points(int slice, const Contour& points) {
+  const std::size_t n = points.size();
+  if (n < 3 || n > kMostPoints)
+    throw std::runtime_error(
+        fmt::format("slice {} has {} points: a contour has three at least, and {} at most", slice, n, kMostPoints));
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 2; j < n; ++j)
+      if (cross(points[i], points[i + 1], points[j], points[(j + 1) % n]))
+        throw std::runtime_error(fmt::format(
+            "the contour in slice {} crosses itself: the line from its point {} to {} meets that from {} to {}; "
+            "points are joined in their order, and the last to the first",
+            slice, i + 1, i + 2, j + 1, (j + 1) % n + 1));
 }
 
 /// Through all points (Catmull and Rom, Computer Aided Geometric Design, 1974), counter-clockwise.
@@ -88,9 +114,7 @@ HandContours read_hand_contours(const std::filesystem::path& file, const GridSha
   if (contours.empty()) throw std::runtime_error(fmt::format("{}: no point stands in it", file.string()));
   for (auto& [slice, points] : contours) {
     if (points.size() > 1 && points.front() == points.back()) points.pop_back();
-    if (points.size() < 3)
-      throw std::runtime_error(fmt::format("{}:{}: slice {} has {} points: a contour has three at least", file.string(),
-                                           last_line[slice], slice, points.size()));
+    of_file(fmt::format("{}:{}", file.string(), last_line[slice]), [&] { check_points(slice, points); });
     points = smooth_line(points);
   }
   return contours;

@@ -11,8 +11,8 @@ namespace palpate {
 using HandContours = std::map<int, Contour>;
 
 /// Reads lines "SLICE X Y": points in voxels, whose order in a slice is the contour's; three at least in a slice. Empty
-/// lines, and what follows a #, say nothing. The contour is a smooth line through them (Catmull and Rom).
-/// Throws std::runtime_error("FILE:LINE: reason").
+/// lines, and what follows a #, say nothing. It may not cross itself. The contour is a smooth line through them
+/// (Catmull and Rom). Throws std::runtime_error("FILE:LINE: reason").
 HandContours read_hand_contours(const std::filesystem::path& file, const GridShape& shape);
 
 /// Puts the contours into their slices of `inside`. Between two slices that are drawn, the others are drawn too, by

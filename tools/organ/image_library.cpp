@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <stdexcept>
 
 #include "common/files/ending.hpp"
@@ -265,11 +266,36 @@ void mirror(Volume<T>& volume) {
   volume.turn.col(0) *= -1;
 }
 
+/// The first file of a folder, in the order of their names, on whose header the library crashes; empty: there is none.
+std::string crashing_slice(const std::filesystem::path& folder) {
+  std::set<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.is_regular_file()) files.insert(entry.path().string());
+  for (const std::string& file : files) try {
+      run_in_child([&] { return std::to_string(dicom_is_whole(file)); });
+    } catch (const ChildDied&) {
+      return file;
+    } catch (const std::runtime_error&) {  // no DICOM picture
+    }
+  return "";
+}
+
+/// What `packed` makes in a child, with the slice's name where the library dies of one.
+template <class T>
+std::string packed_by_child(const std::filesystem::path& file, const std::string& series) try {
+  return run_in_child([&] { return packed<T>(file, series); });
+} catch (const ChildDied&) {
+  if (!std::filesystem::is_directory(file)) throw;
+  const std::string slice = crashing_slice(file);
+  if (slice.empty()) throw;
+  refuse_header(slice);
+}
+
 }  // namespace
 
 template <class T>
 Volume<T> read_with_image_library(const std::filesystem::path& file, const std::string& series) {
-  const std::string bytes = run_in_child([&] { return packed<T>(file, series); });
+  const std::string bytes = packed_by_child<T>(file, series);
   Volume<T> volume{{{}, Eigen::Vector3d::Zero(), {}}, {}};
   std::size_t at = 0;
   for (int& count : volume.shape.count) count = take<int>(bytes, at);

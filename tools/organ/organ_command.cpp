@@ -15,6 +15,8 @@
 #include "tools/organ/mesh_distances.hpp"
 #include "tools/organ/organ_pictures.hpp"
 #include "tools/organ/organ_visual.hpp"
+#include "tools/organ/picture_folder.hpp"
+#include "tools/organ/places.hpp"
 
 namespace palpate {
 namespace {
@@ -123,6 +125,12 @@ void say_apart(const LabelVolume& volume, const LabelVoxels& voxels, const std::
       out.say(fmt::format("    '{}' at {}", voxels.labels[l].name,
                           place_in_mm(volume.in_world(voxels.shape.place_of(first)))));
     }
+}
+
+std::vector<std::string> names_of(const std::vector<NamedLabel>& labels) {
+  std::vector<std::string> names;
+  for (const NamedLabel& label : labels) names.push_back(label.name);
+  return names;
 }
 
 std::vector<NamedLabel> named_labels(const LabelVoxels& voxels, const std::vector<int>& labels) {
@@ -250,7 +258,9 @@ void make_organ(const OrganOptions& o) {
   Output out(o.json);
   fineness_of(o);  // what cannot be read, or written later, is told at once
   check_folder_of(o.visual);
+  check_picture_folder(o.preview);
   const std::vector<NamedLabel> labels = labels_of(o);
+  check_groups(o.groups, names_of(labels));
   const LabelVolume volume = read(o, out);
   LabelVoxels voxels;
   std::vector<Together> bodies;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/mesh/surface.hpp"
+#include "tools/organ/picture_folder.hpp"
 #include "tools/organ/slice_pictures.hpp"
 #include "tools/organ/surface_picture.hpp"
 

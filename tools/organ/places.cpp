@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "common/describe/printable.hpp"
@@ -109,8 +110,11 @@ FinePlace parse_fine_place(const std::string& text) {
       fmt::format("--fine {}: a ball as x,y,z,RADIUS:EDGE or a box as x,y,z,x,y,z:EDGE is asked for, in metres", text));
 }
 
-void check_group(const std::string& text) {
-  parse_group(text, {});
+void check_groups(const std::vector<std::string>& texts, const std::vector<std::string>& taken) {
+  std::set<std::string> names(taken.begin(), taken.end());
+  for (const std::string& text : texts)
+    if (!names.insert(parse_group(text, {}).first).second)
+      throw std::runtime_error(fmt::format("--group {}: there are two groups of that name", text));
 }
 
 void add_group(TetMesh& mesh, const std::string& text) {
@@ -119,8 +123,7 @@ void add_group(TetMesh& mesh, const std::string& text) {
   for (const int n : extract_surface(mesh).nodes)
     if (inside(mesh.nodes[n])) group.nodes.push_back(n);
   if (group.nodes.empty()) throw std::runtime_error(fmt::format("--group {}: no node of the surface lies there", text));
-  if (!mesh.groups.emplace(name, group).second)
-    throw std::runtime_error(fmt::format("--group {}: there are two groups of that name", text));
+  mesh.groups.emplace(name, group);
 }
 
 Eigen::Vector3d farthest_from_group(const std::string& text, const std::vector<Eigen::Vector3d>& surface) {

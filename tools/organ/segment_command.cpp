@@ -8,6 +8,7 @@
 #include "tools/organ/commands.hpp"
 #include "tools/organ/fineness_options.hpp"
 #include "tools/organ/label_file.hpp"
+#include "tools/organ/picture_folder.hpp"
 #include "tools/organ/places.hpp"
 #include "tools/organ/slice_pictures.hpp"
 
@@ -105,9 +106,10 @@ void tell_contours(const SegmentOptions& o, const Segmentation& s, Output& out) 
   }
   if (slices.empty()) return;  // of a few voxels
   on_edge /= static_cast<double>(slices.size());
-  const std::vector<int> doubtful = o.forces.reach > 0 ? doubtful_slices(s) : std::vector<int>{};
-  out.say(fmt::format("  contours in slices {} to {}, {} of them by hand; {:.0f} % of their points on an edge",
-                      slices.front(), slices.back(), by_hand, 100 * on_edge));
+  const bool moved = o.forces.reach > 0;
+  const std::vector<int> doubtful = moved ? doubtful_slices(s) : std::vector<int>{};
+  out.say(fmt::format("  contours in slices {} to {}, {} of them by hand{}", slices.front(), slices.back(), by_hand,
+                      moved ? fmt::format("; {:.0f} % of their points on an edge", 100 * on_edge) : ""));
   if (!doubtful.empty())
     out.say(fmt::format("  less than {:.0f} % in slices {}: look at them (--preview) and draw what is wrong (--points)",
                         100 * kSureEnough, runs_of(doubtful)));
@@ -147,6 +149,7 @@ void tell_segmentation(const SegmentOptions& o, const GridShape& shape, const Se
 void segment_image(const SegmentOptions& o) {
   Output out(o.json);
   check_folder_of(o.output);
+  check_picture_folder(o.preview);
   say_progress("reading the image");
   GreyVolume volume = read_grey_volume(o.image, o.series);
   const GridShape& shape = volume.shape;
@@ -154,14 +157,13 @@ void segment_image(const SegmentOptions& o) {
   const std::vector<std::size_t> seeds = seeds_of(o, volume);
   const SegmentationRules rules = rules_of(o, shape);
   const ScalarGrid image{shape, std::move(volume.value)};
-  ScalarGrid smoothed = image;
   say_progress("smoothing");
-  if (o.smoothing > 0) smooth(smoothed, Eigen::Vector3d::Constant(o.smoothing * shape.spacing.head<2>().minCoeff()));
+  const SmoothedImage smoothed = smoothed_image(image, o.smoothing * shape.spacing.head<2>().minCoeff());
   say_progress("growing the region and moving contours");
   Segmentation segmentation = of_file(o.image, [&] { return segment(smoothed, seeds, rules); });
   if (!o.preview.empty()) {
     say_progress("drawing the slices");
-    write_slice_pictures(image, smoothed, segmentation, o.preview);
+    write_slice_pictures(image, smoothed.sharp, segmentation, o.preview);
   }
   write_label_volume(volume, segmentation.inside, o.output);
   for (Finding& finding : segmentation.findings)

@@ -80,17 +80,32 @@ double SegmentedSlice::on_edge() const {
   return points > 0 ? found / points : 0;
 }
 
-Segmentation segment(const ScalarGrid& grey, const std::vector<std::size_t>& seeds, const SegmentationRules& rules) {
+SmoothedImage smoothed_image(const ScalarGrid& grey, double width) {
+  SmoothedImage image{grey, grey};
+  if (width <= 0) return image;
+  smooth(image.even, Eigen::Vector3d::Constant(width));
+  image.sharp = image.even;
+  smooth(image.sharp, Eigen::Vector3d::Constant(width));
+  for (std::size_t i = 0; i < grey.value.size(); ++i)
+    image.sharp.value[i] = 2 * image.even.value[i] - image.sharp.value[i];
+  return image;
+}
+
+Segmentation segment(const SmoothedImage& image, const std::vector<std::size_t>& seeds,
+                     const SegmentationRules& rules) {
   Segmentation s;
-  s.range = rules.range ? *rules.range : range_around(grey, seeds);
-  s.inside = start_of(grey, seeds, rules, s.range);
-  const GreyLevel level = level_of(grey, s.inside);
-  for (int k = 0; k < grey.shape.count[2]; ++k)
-    s.slices.push_back(segment_slice(grey, k, level, rules, &s.inside[k * layer_of(grey.shape)]));
-  agree_with_neighbours(grey.shape, rules.by_hand, s.inside);
-  keep_largest_piece(grey.shape, s.inside, "organ", s.findings);
-  fill_cavities(grey.shape, s.inside, s.inside, kEveryCavity, "organ", s.findings);
-  count_voxels(layer_of(grey.shape), s);
+  s.range = rules.range ? *rules.range : range_around(image.even, seeds);
+  s.inside = start_of(image.sharp, seeds, rules, s.range);
+  const GreyLevel level = level_of(image.sharp, s.inside);
+  const GridShape& shape = image.sharp.shape;
+  for (int k = 0; k < shape.count[2]; ++k)
+    s.slices.push_back(segment_slice(image.sharp, k, level, rules, &s.inside[k * layer_of(shape)]));
+  agree_with_neighbours(shape, rules.by_hand, s.inside);
+  if (std::ranges::count(s.inside, 1) == 0)
+    throw std::runtime_error("nothing is left of the region in its slices: it is a voxel or two; give a wider --range");
+  keep_largest_piece(shape, s.inside, "organ", s.findings);
+  fill_cavities(shape, s.inside, s.inside, kEveryCavity, "organ", s.findings);
+  count_voxels(layer_of(shape), s);
   return s;
 }
 

@@ -7,6 +7,15 @@
 
 namespace palpate {
 
+/// Grey values without most of their noise.
+struct SmoothedImage {
+  ScalarGrid even;  ///< by a Gaussian: between two tissues it is between their values
+  ScalarGrid
+      sharp;  ///< by twicing (Tukey, Exploratory Data Analysis, 1977): what the Gaussian took away is smoothed and
+              ///< given back. A border of radius r stays in place, which the Gaussian moves by about width^2 / r
+};
+SmoothedImage smoothed_image(const ScalarGrid& grey, double width);  ///< width: the Gaussian's deviation [m], or 0
+
 struct SegmentationRules {
   std::optional<GreyRange> range;  ///< none: from the seeds' surroundings
   double neck = 0;                 ///< [m] parts that hang on by less than this are cut off; 0: none
@@ -30,11 +39,11 @@ struct Segmentation {
   std::vector<Finding> findings;  ///< places in the image's frame
 };
 
-/// An organ's voxels from smoothed grey values (TVCG99 sec. 2-1): a region of a range grows from the seeds (indices of
+/// An organ's voxels from grey values (TVCG99 sec. 2-1): a region of a range grows from the seeds (indices of
 /// voxels), contours drawn by hand take its place in their slices, every slice's other contours move to its edges, and
 /// the slices are stacked: a voxel that differs from both its neighbours in the next slices is as they are (but for
 /// slices drawn by hand), the largest piece stays, its cavities are filled.
 /// Throws std::runtime_error.
-Segmentation segment(const ScalarGrid& grey, const std::vector<std::size_t>& seeds, const SegmentationRules& rules);
+Segmentation segment(const SmoothedImage& image, const std::vector<std::size_t>& seeds, const SegmentationRules& rules);
 
 }  // namespace palpate

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/organ/picture_folder.hpp"
+
 namespace palpate {
 namespace {
 
