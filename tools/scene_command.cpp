@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 
 struct SceneOptions {
   std::string mesh, output, tissue, visual;
+  bool force = false;  ///< files of another kind are written over
   SceneWishes wishes;
 };
 
@@ -44,9 +45,7 @@ void make_scene(const SceneOptions& o) {
   const Tissue& tissue = tissue_of(o);
   const fs::path scene = fs::absolute(o.output), folder = scene.parent_path();
   const fs::path trajectory = folder / (scene.stem().string() + "_motion.csv");
-  if (fs::is_symlink(trajectory) || (fs::exists(trajectory) && !fs::is_regular_file(trajectory)))
-    throw std::runtime_error(trajectory.string() +
-                             ": a link, or no regular file; the trajectory would be written there");
+  cli::require_output(trajectory, ".csv", {"motion"}, o.force);
   const std::string mesh_name = fs::proximate(fs::absolute(o.mesh), folder).string();
   const SceneTexts texts = [&] {
     const TetMesh mesh = load_tet_mesh(o.mesh, 1);
@@ -88,7 +87,10 @@ void add_scene_command(cli::Command& app) {
       .positive();
   command.examples({"palpate scene organ.msh --tissue liver -o organ.toml",
                     "palpate scene organ.msh --tissue liver --visual organ_look.obj -o organ.toml"});
-  command.does([o] { make_scene(*o); });
+  command.does([o, command] {
+    o->force = command.given("--force");
+    make_scene(*o);
+  });
 }
 
 }  // namespace palpate

@@ -295,4 +295,11 @@ int CommandLine::run(int argc, char** argv, const std::function<void()>& first) 
   return 1;
 }
 
+void require_output(const std::string& name, const std::string& ending, const std::vector<std::string>& kinds,
+                    bool force) {
+  std::string why = refuse_output(name, ending);
+  if (why.empty() && !force) why = refuse_kind(name, kinds);
+  if (!why.empty()) throw std::runtime_error(why);
+}
+
 }  // namespace palpate::cli

@@ -86,4 +86,9 @@ class CommandLine : public Command {
   bool has_commands_ = false;
 };
 
+/// Of a file whose name follows from an output's: throws std::runtime_error in one sentence where it is none that can
+/// be written, or of another kind (file_kind.hpp) than `kinds` and `force` is not given.
+void require_output(const std::string& name, const std::string& ending, const std::vector<std::string>& kinds,
+                    bool force);
+
 }  // namespace palpate::cli

@@ -28,7 +28,7 @@ TEST(ImageFuzz, AnImageIsReadOrRefusedInWords) {
   });
 }
 
-TEST(ImageFuzz, ADicomSeriesWithASpoiltSliceIsReadOrRefusedInWords) {
+TEST(DicomFuzz, ASeriesWithASpoiltSliceIsReadOrRefusedInWords) {
   const TemporaryFolder folder;
   std::string slice;
   for (int k = 0; k < 3; ++k) {

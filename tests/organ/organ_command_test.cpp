@@ -158,6 +158,20 @@ TEST_F(OrganCommand, LabelsThatDoNotTouchBecomeAMeshEach) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures" / name / "surface.png")) << name;
 }
 
+TEST_F(OrganCommand, NoFileOfAnotherKindIsReplacedUnderAnyName) {
+  std::string apart = voxels();
+  for (int k = 0; k < kZ; ++k)
+    for (int j = 0; j < kY; ++j)
+      for (int i = 30; i < 36; ++i) apart[voxel(i, j, k)] = 0;
+  const auto image = write_file(folder_ / "kept.inr", header() + apart);
+  write_file(folder_ / "k_small.msh", "mine");
+  const auto made = organ(image, "--label 7=big --label 9=small --nodes 400 -o " + (folder_ / "k.msh").string());
+  EXPECT_EQ(made.status, 1);
+  EXPECT_NE(made.err.find("k_small.msh is "), std::string::npos) << made.err;
+  EXPECT_EQ(text_of(folder_ / "k_small.msh"), "mine");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "k_big.msh"));
+}
+
 /// A hollow box of label 5 in the empty corner.
 std::string with_a_hollow_box(std::string voxels) {
   for (int k = 2; k < 12; ++k)

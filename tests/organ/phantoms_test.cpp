@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <numbers>
 
 #include "common/mesh/measures.hpp"
@@ -178,6 +179,20 @@ TEST_F(Phantom, AHollowBoxOfThickSlicesKeepsItsLids) {
 }
 
 // Midway in a wall of an even number of voxels two are equally deep.
+TEST_F(Phantom, ASmallCavityIsKeptWhereverItLies) {
+  constexpr double kBall = 14, kCavity = 4;  // [mm] 2.3 % of the ball
+  for (const double aside : {0.0, 6.0}) {
+    const TetMesh mesh = mesh_of({34, 34, 34}, "--label 1 --nodes 900", [&](int i, int j, int k) {
+      const Eigen::Vector3d x(i - 16.5, j - 16.5, k - 16.5);
+      return x.norm() < kBall && (x - Eigen::Vector3d(aside, 0, 0)).norm() > kCavity;
+    });
+    EXPECT_EQ(topology_of(mesh), (Topology{2, 0})) << aside << said_;
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& x : mesh.nodes) box.extend(x);
+    EXPECT_NEAR(box.sizes().mean(), 2e-3 * kBall, 0.3e-3) << aside;  // the volume is not made up for outside
+  }
+}
+
 TEST_F(Phantom, WallsAreToldWhetherTheirVoxelsAreEvenOrOdd) {
   for (const int wall : {1, 2, 3}) {
     const std::string image = folder_ / "walls.inr";

@@ -182,6 +182,30 @@ TEST_F(SegmentCommand, ABallOfAFewVoxelsIsNotShrunk) {
   }
 }
 
+TEST_F(SegmentCommand, TheRangeIsMidwayToTheSurroundingsHoweverMuchIsSmoothed) {
+  for (const double noise : {0.0, 4.0})
+    for (const double smoothing : {0.0, 1.0, 2.0, 3.0}) {
+      write_ball(*folder_ / "ball.inr", 11, noise);
+      const LabelVolume found =
+          labels(fmt::format("ball.inr --smoothing {} --json --seed-voxel 16,16,16", smoothing), "s.inr");
+      const auto json = nlohmann::json::parse(said_);
+      EXPECT_NEAR(json["range"][0], 90, 4) << noise << " " << smoothing;
+      EXPECT_GT(json["range"][1], 130) << noise << " " << smoothing;
+      EXPECT_EQ(json["seeds"], (std::vector<std::vector<int>>{{16, 16, 16}}));
+      const double ball = 4.0 / 3 * std::numbers::pi * std::pow(11.0, 3), off = smoothing > 2 ? 0.15 : 0.04;
+      EXPECT_NEAR(json["label_voxels"], ball, off * ball) << noise << " " << smoothing;
+    }
+}
+
+TEST_F(SegmentCommand, WhereTheSeedIsInNoPartOfItsOwnARangeIsAskedFor) {
+  write_phantom(*folder_ / "wall.inr", {33, 33, 33}, 1, [](int i, int, int) { return i > 14 && i < 18 ? 120 : 60; });
+  const ProgramResult refused = segment("wall.inr --seed-voxel 16,16,16 -o wall.mha");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.err.find("around the seeds fill the image"), std::string::npos) << refused.err;
+  const LabelVolume found = labels("wall.inr --range 90:255 --seed-voxel 16,16,16", "wall.inr2.inr");
+  EXPECT_NEAR(static_cast<double>(std::ranges::count(found.value, 1)), 3 * 33 * 33, 0.1 * 3 * 33 * 33);
+}
+
 TEST_F(SegmentCommand, NothingBrighterAroundTheOrganCutsNoHolesIntoIt) {
   write_ball(*folder_ / "ball.inr", 9, 12);
   const LabelVolume found = labels("ball.inr --reach 0 --neck 8 --seed-voxel 16,16,16", "small.inr");

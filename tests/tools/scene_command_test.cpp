@@ -178,6 +178,16 @@ TEST_F(ToolsScene, AToolThatNeverArrivesIsWarnedOf) {
   expect_warning("tool 'instrument' comes to no body on its way");
 }
 
+TEST_F(ToolsScene, AFileThatIsNoMotionIsNotReplacedByOne) {
+  const std::string command = program("palpate") + " scene " + (folder_ / "block.msh").string() +
+                              " --tissue kidney -o " + (folder_ / "own.toml").string();
+  std::ofstream(folder_ / "own_motion.csv") << "dear diary\n";
+  expect_refusal(command, {"own_motion.csv is", "would be replaced by"});
+  EXPECT_EQ(text_of(folder_ / "own_motion.csv"), "dear diary\n");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "own.toml"));
+  EXPECT_EQ(run_program(command + " --force").status, 0);
+}
+
 TEST_F(ToolsScene, WhatIsNotThereIsToldInASentence) {
   const std::string command =
       program("palpate") + " scene " + (folder_ / "block.msh").string() + " -o " + (folder_ / "b.toml").string();

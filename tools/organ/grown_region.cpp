@@ -11,11 +11,14 @@
 namespace palpate {
 namespace {
 
-constexpr int kAround = 2;            // [voxels] to each side of a seed
-constexpr double kTold = 4;           // deviations that are still the organ's
-constexpr double kNear = 2;           // [voxels] from a border within which smoothed values are between its two sides'
-constexpr double kShell = 4;          // [voxels] around the organ, without those, whose values are its surroundings'
-constexpr int kEnough = 20;           // voxels from which a median is taken
+constexpr int kAround = 2;         // [voxels] to each side of a seed
+constexpr double kTold = 4;        // deviations that are still the organ's
+constexpr double kNear = 2;        // [voxels, and blurs] from a border within which values are between its two sides'
+constexpr double kShell = 2;       // [voxels] beyond, whose values are the surroundings'
+constexpr int kPasses = 8;         // until the range stays
+constexpr double kSettled = 0.02;  // of the range's width that it may still change by
+constexpr double kFull = 0.95;     // of the image, beyond which a region is no organ
+constexpr int kEnough = 20;        // voxels from which a median is taken
 constexpr double kOfNormal = 1.4826;  // deviation of a normal distribution, in median distances to its median
 
 double median_of(std::vector<float>& values) {
@@ -52,21 +55,32 @@ std::vector<char> in_range(const ScalarGrid& grey, const GreyRange& range) {
   return inside;
 }
 
-/// Puts the range's ends midway to the medians of what is darker and brighter around the region; where there is one of
-/// the two alone, the other end is as far from the organ's grey: nothing there needs a sharper one.
-void widen_to_surroundings(const ScalarGrid& grey, const std::vector<char>& inside, double median, GreyRange& range) {
-  const DistanceGrid distance = distance_to_border(grey.shape, inside);
-  const double voxel = grey.shape.spacing.mean();
+/// What surrounds a region, by grey values that are not the range's.
+struct Surroundings {
   std::vector<float> darker, brighter;
+};
+
+Surroundings surroundings_of(const ScalarGrid& grey, const std::vector<char>& inside, double blur, double median,
+                             const GreyRange& range) {
+  const DistanceGrid distance = distance_to_border(grey.shape, inside);
+  const double voxel = grey.shape.spacing.mean(), near = std::max(kNear * voxel, kNear * blur);
+  Surroundings around;
   for (std::size_t i = 0; i < inside.size(); ++i) {
-    if (distance.value[i] < kNear * voxel || distance.value[i] > kShell * voxel || range.holds(grey.value[i])) continue;
-    (grey.value[i] < median ? darker : brighter).push_back(grey.value[i]);
+    if (distance.value[i] < near || distance.value[i] > near + kShell * voxel || range.holds(grey.value[i])) continue;
+    (grey.value[i] < median ? around.darker : around.brighter).push_back(grey.value[i]);
   }
-  const bool low = darker.size() >= kEnough, high = brighter.size() >= kEnough;
-  if (low) range.low = 0.5 * (median + median_of(darker));
-  if (high) range.high = 0.5 * (median + median_of(brighter));
+  return around;
+}
+
+/// The range whose ends lie midway from `median` to the medians of what is darker and brighter around; where there is
+/// one of the two alone, the other end is as far from it: nothing there needs a sharper one.
+GreyRange range_between(Surroundings around, double median, GreyRange range) {
+  const bool low = around.darker.size() >= kEnough, high = around.brighter.size() >= kEnough;
+  if (low) range.low = 0.5 * (median + median_of(around.darker));
+  if (high) range.high = 0.5 * (median + median_of(around.brighter));
   if (low && !high) range.high = std::max(range.high, 2 * median - range.low);
   if (high && !low) range.low = std::min(range.low, 2 * median - range.high);
+  return range;
 }
 
 std::string say_seed(const GridShape& shape, std::size_t seed) {
@@ -91,7 +105,7 @@ GreyLevel level_of(const ScalarGrid& grey, const std::vector<char>& inside) {
   return level_of_values(all);
 }
 
-GreyRange range_around(const ScalarGrid& grey, const std::vector<std::size_t>& seeds) {
+GreyRange range_around(const ScalarGrid& grey, double blur, const std::vector<std::size_t>& seeds) {
   const GreyLevel level = level_around(grey, seeds);
   const double half = kTold * level.deviation;
   GreyRange range{level.median - half, level.median + half};
@@ -99,9 +113,19 @@ GreyRange range_around(const ScalarGrid& grey, const std::vector<std::size_t>& s
     range.low = std::min<double>(range.low, grey.value[seed]);
     range.high = std::max<double>(range.high, grey.value[seed]);
   }
-  std::vector<char> inside = in_range(grey, range);
-  keep_pieces_with(grey.shape, inside, seeds);
-  widen_to_surroundings(grey, inside, level.median, range);
+  for (int pass = 0; pass < kPasses; ++pass) {
+    std::vector<char> inside = in_range(grey, range);
+    keep_pieces_with(grey.shape, inside, seeds);
+    if (std::ranges::count(inside, 1) > kFull * static_cast<double>(inside.size()))
+      throw std::runtime_error(
+          fmt::format("grey values of {:.4g} to {:.4g} around the seeds fill the image: they lie in no part that is "
+                      "told from the rest; give the organ's --range, or other seeds",
+                      range.low, range.high));
+    const GreyRange before = range;
+    range = range_between(surroundings_of(grey, inside, blur, level.median, range), level.median, range);
+    const double change = std::max(std::abs(range.low - before.low), std::abs(range.high - before.high));
+    if (change < kSettled * (range.high - range.low)) break;
+  }
   return range;
 }
 

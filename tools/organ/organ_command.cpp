@@ -30,6 +30,7 @@ struct OrganOptions : MeshOptions {
     if_strange = "are the image's voxels of the right size?";
   }
   std::string volume, preview, visual;
+  bool force = false;  ///< files of another kind are written over
   int visual_triangles = 14000;
   std::vector<std::string> labels;
   double smoothing = 1, gap_mm = 0;
@@ -254,6 +255,13 @@ void tell_gaps(const LabelVoxels& voxels, const std::vector<Together>& bodies, c
   tell_distances(meshes, 1e-3 * o.gap_mm, out);
 }
 
+/// Before anything is written, or the meshes are made.
+void check_outputs(const OrganOptions& own) {
+  cli::require_output(own.output, ".msh", {".msh"}, own.force);
+  if (!own.visual.empty()) cli::require_output(own.visual, ".obj", {".csv"}, own.force);
+  check_picture_folder(own.preview);
+}
+
 void make_organ(const OrganOptions& o) {
   Output out(o.json);
   fineness_of(o);  // what cannot be read, or written later, is told at once
@@ -272,13 +280,16 @@ void make_organ(const OrganOptions& o) {
                      bodies = bodies_of(o, volume, voxels, findings);
                    });
   say_apart(volume, voxels, bodies, out);
+  std::vector<OrganOptions> options;  // of each body
+  for (const Together& body : bodies)
+    options.push_back(bodies.size() == 1 ? o : options_of_one(o, named_labels(voxels, body.labels)));
+  std::ranges::for_each(options, check_outputs);
   const std::vector<MadeBody> made = make_bodies(volume, voxels, bodies, o, out);
   tell_gaps(voxels, bodies, made, o, out);
   std::vector<MeshWithEdge> written;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     out.next_mesh();
-    const OrganOptions own = bodies.size() == 1 ? o : options_of_one(o, named_labels(voxels, bodies[b].labels));
-    write_body(volume, voxels, bodies[b], made[b], own, out);
+    write_body(volume, voxels, bodies[b], made[b], options[b], out);
     written.push_back({made[b].mesh, out.mesh().at("mean_edge_m")});
   }
   warn_of_idle_places(o, written, out);
@@ -317,7 +328,10 @@ void add_organ_command(cli::Command& app) {
   command.tells_progress();
   command.examples(
       {"palpate organ liver.inr.gz --label 255=liver --label 85=gall_bladder --group attachment=above:z -o organ.msh"});
-  command.does([o] { make_organ(*o); });
+  command.does([o, command] {
+    o->force = command.given("--force");
+    make_organ(*o);
+  });
 }
 
 }  // namespace palpate

@@ -58,6 +58,15 @@ std::vector<std::size_t> seeds_of(const SegmentOptions& o, const GreyVolume& vol
   return seeds;
 }
 
+void tell_seeds(const GreyVolume& volume, const std::vector<std::size_t>& seeds, Output& out) {
+  out.figures()["seeds"] = Output::Json::array();
+  for (const std::size_t seed : seeds) {
+    const auto [i, j, k] = volume.shape.voxel_of(seed);
+    out.say(fmt::format("  seed at voxel {},{},{}, of grey value {:.4g}", i, j, k, volume.value[seed]));
+    out.figures()["seeds"].push_back({i, j, k});
+  }
+}
+
 SegmentationRules rules_of(const SegmentOptions& o, const GridShape& shape) {
   SegmentationRules rules;
   rules.neck = 1e-3 * o.neck;
@@ -155,6 +164,7 @@ void segment_image(const SegmentOptions& o) {
   const GridShape& shape = volume.shape;
   tell_image(o.image, shape, out);
   const std::vector<std::size_t> seeds = seeds_of(o, volume);
+  tell_seeds(volume, seeds, out);
   const SegmentationRules rules = rules_of(o, shape);
   const ScalarGrid image{shape, std::move(volume.value)};
   say_progress("smoothing");
@@ -183,7 +193,11 @@ void add_segment_command(cli::Command& app) {
   command.add_option("-o,--output", o->output, "Labels to write (.mha, .nrrd; .inr keeps no origin)")
       .required()
       .output_file("", {".inr", ".mha", ".nrrd"});
-  command.add_option("--seed", o->seeds, "Point in the organ: x,y,z in the image's world [mm]; may be given again")
+  command
+      .add_option(
+          "--seed", o->seeds,
+          "Point in the organ: x,y,z in the image's world [mm], to the left, back and head as DICOM has it (the first "
+          "two of NIfTI's own with the other sign); may be given again")
       .one_value_each_time();
   command.add_option("--seed-voxel", o->seed_voxels, "The same in voxels, from 0; may be given again")
       .one_value_each_time();

@@ -32,6 +32,16 @@ std::vector<char> start_of(const ScalarGrid& grey, const std::vector<std::size_t
   return inside;
 }
 
+/// The two kinds of smoothed values differ: a seed is in its own range by both.
+GreyRange range_for(const SmoothedImage& image, const std::vector<std::size_t>& seeds) {
+  GreyRange range = range_around(image.even, image.width, seeds);
+  for (const std::size_t seed : seeds) {
+    range.low = std::min<double>(range.low, image.sharp.value[seed]);
+    range.high = std::max<double>(range.high, image.sharp.value[seed]);
+  }
+  return range;
+}
+
 SegmentedSlice segment_slice(const ScalarGrid& grey, int k, const GreyLevel& level, const SegmentationRules& rules,
                              char* inside) {
   SegmentedSlice slice{outlines_of(grey.shape.count[0], grey.shape.count[1], inside), {}, false};
@@ -81,7 +91,7 @@ double SegmentedSlice::on_edge() const {
 }
 
 SmoothedImage smoothed_image(const ScalarGrid& grey, double width) {
-  SmoothedImage image{grey, grey};
+  SmoothedImage image{width, grey, grey};
   if (width <= 0) return image;
   smooth(image.even, Eigen::Vector3d::Constant(width));
   image.sharp = image.even;
@@ -94,7 +104,7 @@ SmoothedImage smoothed_image(const ScalarGrid& grey, double width) {
 Segmentation segment(const SmoothedImage& image, const std::vector<std::size_t>& seeds,
                      const SegmentationRules& rules) {
   Segmentation s;
-  s.range = rules.range ? *rules.range : range_around(image.even, seeds);
+  s.range = rules.range ? *rules.range : range_for(image, seeds);
   s.inside = start_of(image.sharp, seeds, rules, s.range);
   const GreyLevel level = level_of(image.sharp, s.inside);
   const GridShape& shape = image.sharp.shape;

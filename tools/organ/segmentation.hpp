@@ -9,6 +9,7 @@ namespace palpate {
 
 /// Grey values without most of their noise.
 struct SmoothedImage {
+  double width;     ///< [m] the Gaussian's deviation; 0: the values are as they were
   ScalarGrid even;  ///< by a Gaussian: between two tissues it is between their values
   ScalarGrid
       sharp;  ///< by twicing (Tukey, Exploratory Data Analysis, 1977): what the Gaussian took away is smoothed and

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <unordered_map>
+
+#include "tools/organ/joined_sets.hpp"
 
 namespace palpate {
 namespace {
@@ -21,19 +24,54 @@ SurfaceSample between(const Solid& solid, Eigen::Vector3d a, int part_a, Eigen::
   return {0.5 * (a + b), {std::min(part_a, part_b), std::max(part_a, part_b)}};
 }
 
-/// Of many points some that lie far from one another: until none is farther than `near` [m] from these.
-std::vector<SurfaceSample> spread(const std::vector<SurfaceSample>& all, double near) {
+/// Of many points some that lie far from one another: until none is farther than `near` [m] from these, and of so many
+/// at least.
+std::vector<SurfaceSample> spread(const std::vector<SurfaceSample>& all, double near, std::size_t least) {
   std::vector<SurfaceSample> chosen;
   const std::size_t stride = 1 + all.size() / kLookedAt, count = (all.size() + stride - 1) / stride;
   std::vector<double> distance(count, std::numeric_limits<double>::infinity());
   for (std::size_t next = 0; chosen.size() < std::min(count, kMaxOfEach);) {
-    if (chosen.size() >= kOfEachSurface && distance[next] < near * near) break;
+    if (chosen.size() >= least && distance[next] < near * near) break;
     chosen.push_back(all[next * stride]);
     for (std::size_t i = 0; i < count; ++i)
       distance[i] = std::min(distance[i], (all[i * stride].place - chosen.back().place).squaredNorm());
     next = std::ranges::max_element(distance) - distance.begin();
   }
   return chosen;
+}
+
+/// Which points lie on one surface: those in cells of `size` [m] that touch. A leader's number for each.
+std::vector<int> surface_of(const std::vector<SurfaceSample>& all, const Eigen::Vector3d& low, double size) {
+  constexpr int kBits = 20;             // of a cell's number along an axis
+  std::unordered_map<long, int> first;  // sample of a cell
+  JoinedSets sets(all.size());
+  for (int s = 0; s < static_cast<int>(all.size()); ++s) {
+    const Eigen::Array3i at = ((all[s].place - low).array() / size).floor().cast<int>() + 1;
+    for (int n = 0; n < 27; ++n) {
+      const Eigen::Array3i beside = at + Eigen::Array3i(n % 3, n / 3 % 3, n / 9) - 1;
+      const long cell = (static_cast<long>(beside[2]) << kBits | beside[1]) << kBits | beside[0];
+      if (n == 13) first.try_emplace(cell, s);
+      if (const auto other = first.find(cell); other != first.end()) sets.join(s, other->second);
+    }
+  }
+  std::vector<int> surface;
+  for (int s = 0; s < static_cast<int>(all.size()); ++s) surface.push_back(sets.leader(s));
+  return surface;
+}
+
+/// Points between two parts on one surface, most of these first.
+std::vector<std::vector<SurfaceSample>> by_parts_and_surface(const std::vector<SurfaceSample>& all,
+                                                             const std::vector<int>& surface) {
+  std::map<std::array<int, 2>, std::map<int, std::vector<SurfaceSample>>> found;
+  for (std::size_t s = 0; s < all.size(); ++s) found[all[s].parts][surface[s]].push_back(all[s]);
+  std::vector<std::vector<SurfaceSample>> groups;
+  for (auto& [parts, of_surface] : found) {
+    const auto first = static_cast<std::ptrdiff_t>(groups.size());
+    for (auto& [leader, samples] : of_surface) groups.push_back(std::move(samples));
+    std::stable_sort(groups.begin() + first, groups.end(),
+                     [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  }
+  return groups;
 }
 
 /// Calls note(place, its part, place before it along an axis, that one's part) where the part changes on a grid.
@@ -60,15 +98,17 @@ std::vector<SurfaceSample> surface_samples(const Solid& solid, double step, doub
   const Eigen::Vector3d size = solid.high - solid.low;
   const double finest = std::max(size.maxCoeff() / kMaxSteps, std::cbrt(size.prod() / kMaxPlaces));
   const double h = std::max(0.5 * std::min(step, solid.wall.thickness), finest);
-  std::map<std::array<int, 2>, std::vector<SurfaceSample>> found;
+  std::vector<SurfaceSample> all, samples;
   at_changes(solid, h, [&](const Eigen::Vector3d& a, int part_a, const Eigen::Vector3d& b, int part_b) {
-    const SurfaceSample sample = between(solid, a, part_a, b, part_b);
-    found[sample.parts].push_back(sample);
+    all.push_back(between(solid, a, part_a, b, part_b));
   });
-  std::vector<SurfaceSample> samples;
-  for (const auto& [parts, all] : found) {
-    const auto few = spread(all, apart * solid.wall.thickness);
+  const double near = apart * solid.wall.thickness;
+  std::array<int, 2> last{-1, -1};
+  for (const auto& group : by_parts_and_surface(all, surface_of(all, solid.low, h))) {
+    const bool is_first = group.front().parts != last;  // a further surface, of a cavity, needs points an edge apart
+    const auto few = is_first ? spread(group, near, kOfEachSurface) : spread(group, std::min(near, step), 0);
     samples.insert(samples.end(), few.begin(), few.end());
+    last = group.front().parts;
   }
   return samples;
 }
