@@ -33,8 +33,17 @@ void BusDevices::take() {
     else if (MotionLimits{}.allow(dofs))
       target->device->put({dofs, sample->seq});
     else
-      refused_.fetch_add(1, std::memory_order_relaxed);
+      refuse(sample->tool, dofs);
   }
+}
+
+void BusDevices::refuse(std::uint32_t tool, const ToolDofs& dofs) {
+  if (refused_.fetch_add(1, std::memory_order_relaxed) > 0) return;
+  log_warning(fmt::format(
+      "a driver on topic {} puts tool {} where no tool can be, at yaw {:.4g}, pitch {:.4g}, depth {:.4g}, roll "
+      "{:.4g}, grip {:.4g}: in rad and m they are up to {} and {} either way; such samples are not heard",
+      topics::device_state.name, tool, dofs.yaw, dofs.pitch, dofs.depth, dofs.roll, dofs.grip, MotionLimits::kMaxAngle,
+      MotionLimits::kMaxDepth));
 }
 
 void BusDevices::say_unknown(std::uint32_t tool) {
@@ -52,7 +61,8 @@ void wait_for_devices(std::vector<std::unique_ptr<Device>>& devices, Bus& bus, d
   while (!all_ready() && !shutdown_requested()) {
     if (seconds > 0 && std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(seconds))
       throw std::runtime_error(
-          fmt::format("no driver on topic {} has spoken for {} s", topics::device_state.name, seconds));
+          fmt::format("no driver on topic {} has spoken for {} s{}", topics::device_state.name, seconds,
+                      drivers.refused() > 0 ? fmt::format(": {} samples were not heard", drivers.refused()) : ""));
     std::this_thread::sleep_for(std::chrono::microseconds(250));
     drivers.take();
   }

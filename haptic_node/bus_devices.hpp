@@ -24,6 +24,7 @@ class BusDevices {
     Device* device;
   };
   void say_unknown(std::uint32_t tool);
+  void refuse(std::uint32_t tool, const ToolDofs& dofs);
 
   std::unique_ptr<Reader<DeviceState>> reader_;
   std::vector<Target> targets_;

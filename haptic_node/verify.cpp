@@ -263,6 +263,8 @@ VerifyReport verify_log(const std::filesystem::path& file, const Scene& scene) {
   for (const Body& body : scene.bodies) archives.push_back(archive_for_step(scene, body));
   RunVerifier verifier(scene, archives, recorded.thinned, report);
   for (const auto& [id, run] : runs) {
+    const auto first = run.keyframes.empty() ? run.steps.end() : run.steps.lower_bound(run.keyframes.begin()->first);
+    report.before_keyframe += static_cast<std::uint64_t>(std::distance(run.steps.begin(), first));
     if (run.keyframes.empty() || !report.mismatch.empty()) continue;
     RecordedModels models(file, recorded.deform_runs, id);
     verifier.verify(run, models);

@@ -10,8 +10,10 @@ namespace palpate {
 
 /// What a log proves about its haptic steps.
 struct VerifyReport {
-  std::uint64_t steps = 0;        ///< steps computed again
-  std::uint64_t forces = 0;       ///< recorded forces that were compared, and equal bit for bit
+  std::uint64_t steps = 0;   ///< steps computed again
+  std::uint64_t forces = 0;  ///< recorded forces that were compared, and equal bit for bit
+  std::uint64_t before_keyframe =
+      0;                          ///< recorded steps that come before a run's first keyframe: no state to start from
   std::uint64_t tasks = 0;        ///< recorded task records, likewise
   std::vector<std::string> gaps;  ///< places that cannot be verified, and why
   std::string mismatch;           ///< the first force that differs; empty if none does

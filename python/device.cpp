@@ -1,9 +1,13 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "common/bus/dds_bus.hpp"
@@ -14,6 +18,9 @@ namespace py = pybind11;
 
 namespace palpate::python {
 namespace {
+
+constexpr double kLongestWait = 1e9;             // [s]
+constexpr std::int64_t kSignalNs = 100'000'000;  // between two looks for signals
 
 /// A driver's ends of the bus, for one tool.
 class Device {
@@ -52,8 +59,19 @@ class Device {
   MotorForce fade() { return follower_.give(now_ns()); }
   const ForceFollower& follower() const { return follower_; }
 
-  /// Until something has come.
-  bool wait(double seconds) { return bus_->wait(std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds))); }
+  /// Until something has come, or a signal that Python has a handler for.
+  bool wait(double seconds) {
+    if (std::isnan(seconds)) throw std::invalid_argument("seconds is no number");
+    const std::int64_t end = now_ns() + static_cast<std::int64_t>(1e9 * std::clamp(seconds, 0.0, kLongestWait));
+    for (std::int64_t left = end - now_ns();; left = end - now_ns()) {
+      const bool has_come = [&] {
+        const py::gil_scoped_release others;
+        return bus_->wait(std::chrono::nanoseconds(std::clamp<std::int64_t>(left, 0, kSignalNs)));
+      }();
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      if (has_come || left <= kSignalNs) return has_come;
+    }
+  }
   std::uint64_t written() const { return written_; }
 
  private:
@@ -116,8 +134,10 @@ PYBIND11_MODULE(_device, module) {
            "without a kick when it begins, falls silent or is another one.")
       .def("fade", &Device::fade, "The same without hearing what comes: for the end, until `limp`.")
       .def("take", &Device::take, "The newest force since the last call, as it was told, or None.")
-      .def("wait", &Device::wait, py::arg("seconds"), py::call_guard<py::gil_scoped_release>(),
-           "Sleeps until something may have come, at most so long.")
+      .def("wait", &Device::wait, py::arg("seconds"),
+           "Sleeps until something may have come, at most so long [s], or a signal that Python handles. Raises "
+           "ValueError "
+           "for nan.")
       .def_property_readonly("written", &Device::written, "samples sent")
       .def_property_readonly(
           "limp", [](const Device& d) { return d.follower().limp(); }, "without force, since none comes")

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "common/bus/log_reader.hpp"
 #include "common/cli/progress.hpp"
@@ -12,6 +13,8 @@
 #include "haptic_node/verify.hpp"
 #include "tools/log_player.hpp"
 #include "tools/logs/log_files.hpp"
+#include "tools/logs/log_sender.hpp"
+#include "tools/replay_guard.hpp"
 #include "tools/shared/commands.hpp"
 #include "tools/shared/network_options.hpp"
 
@@ -34,6 +37,7 @@ nlohmann::ordered_json json_of(const std::string& file, const VerifyReport& repo
           {"verified", report.verified() && tissue.mismatch.empty() && tissue.gaps.empty()},
           {"steps", report.steps},
           {"forces", report.forces},
+          {"steps_before_keyframe", report.before_keyframe},
           {"tasks", report.tasks},
           {"tissue_ticks", tissue.ticks},
           {"code_path", report.code_path},
@@ -93,6 +97,9 @@ void verify(const ReplayOptions& o) {
       fmt::print("{}: with tensors of '{}' that were computed on this host\n", o.file, fmt::join(computed, "', '"));
     fmt::print("{}: verified: {} forces of {} steps are equal bit for bit, on code path {}\n", o.file, report.forces,
                report.steps, report.code_path);
+    if (report.before_keyframe > 0)
+      fmt::print("{}: not verified: {} steps that were recorded before the first keyframe of their run\n", o.file,
+                 report.before_keyframe);
     if (report.tasks > 0)
       fmt::print("{}: verified: {} records of the task are equal bit for bit\n", o.file, report.tasks);
   }
@@ -130,16 +137,19 @@ void play(const ReplayOptions& o) {
   catch_shutdown_signals();
   say_another_scene(o);
   const auto bus = make_dds_bus(o.network);
+  std::optional<ReplayGuard> guard;  // a player's keys let it hear nobody
+  if (o.network.keys.empty()) guard.emplace(*bus, topics_in(o.file, o.play.topics)).look_first();
   request_realtime(
       {.priority = kPlayerPriority, .lock_memory = false});  // where permitted; after the bus has made its threads
   const PlayReport report = play_log(o.file, *bus, o.play, [&](double seconds) {
+    if (guard) guard->look();
     cli::say_in_place(fmt::format("{:9.2f} s", seconds));
     return !shutdown_requested();
   });
   cli::say_in_place("");
   if (o.json) {
     fmt::print("{}\n", json_of(o, report).dump());
-    return;
+    return stop_if_interrupted();
   }
   if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
   if (report.leaps > 0)
@@ -151,6 +161,7 @@ void play(const ReplayOptions& o) {
       "recorded times\n",
       o.file, report.complete ? "all" : "stopped at the first", report.seconds, report.played, o.network.domain,
       report.skipped, pace.p50, pace.p99);
+  stop_if_interrupted();
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 
 #include "common/bus/log_reader.hpp"
 #include "common/bus/log_writer.hpp"
+#include "common/bus/thinning.hpp"
 #include "common/realtime/clock.hpp"
 #include "idl/topics.hpp"
 #include "tests/bus/messages_for_tests.hpp"
@@ -380,6 +381,17 @@ TEST_F(Log, ADiskThatStandsLosesInsteadOfBlockingForLong) {
   reader.join();
   close(pipe);
   EXPECT_EQ(status.written + status.lost, 5001u);
+}
+
+TEST(Thinning, KeepsTheFirstKeyframeOfEachRunThatItComesUponAndEveryTenthAfterIt) {
+  Thinning thinning;
+  thinning.steps = 17;
+  std::vector<std::uint64_t> kept;
+  HapticKeyframe keyframe;
+  for (keyframe.run = 5; keyframe.run < 7; ++keyframe.run)
+    for (keyframe.seq = keyframe.run == 5 ? 4 : 1; keyframe.seq < 26; ++keyframe.seq)
+      if (thinning.keeps(keyframe)) kept.push_back(keyframe.seq);
+  EXPECT_EQ(kept, (std::vector<std::uint64_t>{4, 14, 24, 1, 11, 21}));
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 """What palpate.Device takes and counts: device.py DOMAIN"""
 import math
 import pathlib
+import signal
 import sys
+import time
 
 import palpate
 
@@ -20,3 +22,20 @@ assert device.write([0, 0, 0.1, 0, 0, 0]) and device.written == 2
 
 if not list(pathlib.Path(palpate.__file__).parent.glob("_core.*so")):
     refused(ImportError, "has only palpate.Device: Scene is in the package python3-palpate", lambda: palpate.Scene)
+
+refused(ValueError, "seconds", lambda: device.wait(math.nan))
+
+
+def on_alarm(*_):
+    raise KeyboardInterrupt
+
+
+signal.signal(signal.SIGALRM, on_alarm)
+signal.setitimer(signal.ITIMER_REAL, 0.2)
+begin = time.monotonic()
+try:
+    while device.wait(math.inf):
+        pass
+    assert False, "it slept for ever, and yet has ended"
+except KeyboardInterrupt:
+    assert time.monotonic() - begin < 5, "a signal ends it"

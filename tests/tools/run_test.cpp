@@ -1,11 +1,14 @@
 // What `palpate run` starts, says and fails on.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
 
+#include "common/bus/dds_bus.hpp"
+#include "common/realtime/clock.hpp"
 #include "tests/bus/domain.hpp"
 #include "tests/tools/comes_within.hpp"
 #include "tests/tools/session.hpp"
@@ -179,6 +182,32 @@ TEST(ToolsRun, ADriverThatNeverSpeaksIsWaitedForAsLongAsTheRunIsToLast) {
   EXPECT_EQ(haptic.status, 1);
   EXPECT_NE(haptic.err.find("no driver on topic palpate/device_state has spoken for 1 s"), std::string::npos)
       << haptic.err;
+}
+
+TEST(ToolsRun, ADriverInOtherUnitsIsToldSo) {
+  const LoopbackScene scene("mm-driver", kLinear);
+  scene.replace("device = \"scripted\"\ntrajectory = \"motion.csv\"", "device = \"bus\"");
+  ASSERT_EQ(run_program(program("palpate") + " precompute " + scene.scene()).status, 0);
+  const auto bus = make_dds_bus({.domain = testing::own_domain(), .role = "driver"});
+  const auto writer = bus->writer(topics::device_state);
+  std::atomic<bool> ended = false;
+  std::thread driver([&] {
+    DeviceState state;
+    state.depth = 185;  // mm
+    for (; !ended; std::this_thread::sleep_for(5ms)) {
+      ++state.seq;
+      state.sense_ns = now_ns();
+      writer->write(state);
+    }
+  });
+  const auto haptic = run_program(
+      fmt::format("{} {} --domain {} --seconds 2", program("haptic_node"), scene.scene(), testing::own_domain()));
+  ended = true;
+  driver.join();
+  EXPECT_EQ(haptic.status, 1);
+  EXPECT_NE(haptic.err.find("puts tool 0 where no tool can be, at yaw 0, pitch 0, depth 185"), std::string::npos)
+      << haptic.err;
+  EXPECT_NE(haptic.err.find(" samples were not heard"), std::string::npos) << haptic.err;
 }
 
 TEST(ToolsRun, ASceneTellsTheNetworkToCommandsThatJoinIt) {

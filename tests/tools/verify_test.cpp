@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "common/bus/dds_bus.hpp"
 #include "common/bus/log_reader.hpp"
 #include "common/bus/log_writer.hpp"
 #include "idl/topics.hpp"
@@ -82,6 +83,62 @@ TEST_F(ToolsVerify, ALogThatIsPlayedByTheNetworkOfAnotherSceneSaysSo) {
   EXPECT_NE(run_program(program("palpate") + " replay --verify " + log().string() + " --scene " + other.scene()).status,
             0)
       << "a log is verified with its own scene";
+}
+
+TEST_F(ToolsVerify, AReplayDoesNotSpeakForNodesThatLiveNorMoveTheMotorsOfADriver) {
+  const std::string play =
+      fmt::format("{} replay {} --speed 100 --domain {}", program("palpate"), log().string(), testing::own_domain());
+  const auto bus = make_dds_bus({.domain = testing::own_domain(), .role = "haptic"});
+  {
+    const auto driver = bus->writer(topics::device_state);
+    testing::expect_refusal(play, {"a driver of a device is in ", "its motors would give the forces of the log"});
+    EXPECT_EQ(run_program(play + " --topic tool_state").status, 0);
+  }
+  NodeStatus status;
+  status.node = "haptic 7@here";
+  status.role = "haptic";
+  const auto nodes = bus->writer(topics::node_status);
+  ASSERT_TRUE(nodes->write(status));
+  testing::expect_refusal(play, {"haptic 7@here lives in domain", "--domain"});
+  EXPECT_EQ(run_program(play + " --topic picture_state").status, 0) << "no node's word";
+}
+
+TEST_F(ToolsVerify, ALogOfTwoScenesIsRefusedByWhatNeedsOne) {
+  {
+    LogReader reader(log());
+    LogWriter writer(changed(), std::size_t{1} << 30);
+    writer.write(kHeaderChannel, reader.header().start_monotonic_ns, reader.header());
+    LogEvent event;
+    while (reader.next(event)) writer.write_payload(event.channel, event.receive_ns, event.payload);
+    SceneText other;
+    other.scene_hash = "00000000000000000000000000000001";
+    other.text = "title = \"a plate\"\n";
+    writer.write(topics::scene.name, event.receive_ns + 1, other);
+    writer.finish();
+  }
+  const std::string film = (scene_->folder() / "two.mp4").string(), page = (scene_->folder() / "page").string();
+  for (const std::string& command :
+       {" replay --verify " + changed().string(), " film " + changed().string() + " -o " + film,
+        " report " + changed().string() + " -o " + page}) {
+    const auto refused = run_program(program("palpate") + command);
+    EXPECT_EQ(refused.status, 1) << command;
+    EXPECT_NE(refused.err.find("changed.lcmlog: it holds two scenes, "), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("'a plate'"), std::string::npos) << refused.err;
+  }
+  EXPECT_FALSE(fs::exists(film));
+}
+
+TEST_F(ToolsVerify, StepsBeforeTheFirstKeyframeAreToldOf) {
+  bool is_first = true;
+  rewrite(log(), changed(), [&](LogEvent& event) {
+    if (event.channel == topics::haptic_keyframe.name && std::exchange(is_first, false))
+      event.channel = "palpate/other";
+  });
+  const auto verified = verify(changed());
+  EXPECT_EQ(verified.status, 0) << verified.err;
+  EXPECT_NE(verified.out.find(" steps that were recorded before the first keyframe of their run"), std::string::npos)
+      << verified.out;
+  EXPECT_EQ(verify(log()).out.find("before the first keyframe"), std::string::npos);
 }
 
 TEST_F(ToolsVerify, ALogThatKeepsEnoughIsVerifiedWithoutTheRest) {

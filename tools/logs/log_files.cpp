@@ -16,6 +16,7 @@
 #include "common/describe/digest.hpp"
 #include "common/models/content_hash.hpp"
 #include "idl/topics.hpp"
+#include "tools/logs/scene_title.hpp"
 
 namespace palpate {
 namespace {
@@ -130,15 +131,30 @@ LoggedScene::LoggedScene(const fs::path& log, const fs::path& data) : log_(log),
   if (!data_.empty() && !fs::is_directory(data_))
     throw std::runtime_error(fmt::format("--data: {} is no folder", data_.string()));
   LogReader reader(log);
-  for (LogEvent event; reader.header().scene.empty() && reader.next(event);) {
+  LogEvent event;
+  while (reader.header().scene.empty() && reader.next(event)) {
   }
   if (reader.header().scene.empty())
     throw std::runtime_error(
         fmt::format("{}: the log holds no scene, so nothing of it can be drawn or computed again", log.string()));
+  require_one_scene(reader, event.receive_ns);
   MovedFiles moved;
   find_files(moved);
   scene_ = parse_scene(reader.header().scene, log, moved);
   require_same_archives();
+}
+
+/// Reads on to the end.
+void LoggedScene::require_one_scene(LogReader& reader, std::int64_t begin_ns) const {
+  SceneText scene;
+  for (LogEvent event; reader.next(event);) {
+    if (!event.read(topics::scene, scene) || scene.scene_hash == reader.header().scene_hash) continue;
+    throw std::runtime_error(fmt::format(
+        "{}: it holds two scenes, '{}' and, {:.1f} s later, '{}'; what is drawn, reported or verified is of "
+        "one: record each by itself",
+        log_.string(), title_of(reader.header().scene), 1e-9 * static_cast<double>(event.receive_ns - begin_ns),
+        title_of(scene.text)));
+  }
 }
 
 // One at a time: a log may hold more than the memory.

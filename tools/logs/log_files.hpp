@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/log_format.hpp"
+#include "common/bus/log_reader.hpp"
 #include "common/bus/thinning.hpp"
 #include "common/scene/moved_files.hpp"
 
@@ -31,7 +31,7 @@ class LoggedScene {
   /// Finds each file that the scene names: where it was, if it is as it was; in a folder `data`, if that is not empty,
   /// by what is in it; or in the log, from which it is written into `data` or, without one, a folder that lives as
   /// long as this object. Throws std::runtime_error, with the hash of what is missing, or if the haptic node had other
-  /// files than those.
+  /// files than those, or the log holds another scene too.
   LoggedScene(const std::filesystem::path& log, const std::filesystem::path& data);
   ~LoggedScene();
   LoggedScene(const LoggedScene&) = delete;
@@ -45,6 +45,7 @@ class LoggedScene {
  private:
   void find_files(MovedFiles& moved);
   void require_same_archives() const;
+  void require_one_scene(LogReader& reader, std::int64_t begin_ns) const;
   std::filesystem::path place_of(const LogFile& file);
   const std::filesystem::path& folder();
 
