@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "common/bus/log_reader.hpp"
 #include "common/cli/progress.hpp"
@@ -137,12 +136,11 @@ void play(const ReplayOptions& o) {
   catch_shutdown_signals();
   say_another_scene(o);
   const auto bus = make_dds_bus(o.network);
-  std::optional<ReplayGuard> guard;  // a player's keys let it hear nobody
-  if (o.network.keys.empty()) guard.emplace(*bus, topics_in(o.file, o.play.topics)).look_first();
+  if (o.network.keys.empty())  // with keys a player hears nobody
+    look_who_is_there(*bus, topics_in(o.file, o.play.topics));
   request_realtime(
       {.priority = kPlayerPriority, .lock_memory = false});  // where permitted; after the bus has made its threads
   const PlayReport report = play_log(o.file, *bus, o.play, [&](double seconds) {
-    if (guard) guard->look();
     cli::say_in_place(fmt::format("{:9.2f} s", seconds));
     return !shutdown_requested();
   });

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <stdexcept>
-#include <utility>
 
 #include "common/realtime/clock.hpp"
 #include "common/realtime/shutdown.hpp"
@@ -23,37 +22,29 @@ bool is_of_nodes(std::uint32_t writers) {
 
 }  // namespace
 
-ReplayGuard::ReplayGuard(Bus& bus, const std::set<std::string>& topics)
-    : bus_(bus),
-      moves_motors_(topics.contains(topics::force_state.name)),
-      own_drivers_(topics.contains(topics::device_state.name)),
-      nodes_(bus.reader(topics::node_status)),
-      drivers_(bus.reader(topics::device_state)) {
+void look_who_is_there(Bus& bus, const std::set<std::string>& topics) {
+  bool speaks_for_nodes = false;
   topics::for_each(
-      [&](const auto& topic) { speaks_for_nodes_ |= is_of_nodes(topic.writers) && topics.contains(topic.name); });
-}
-
-void ReplayGuard::look_first() {
-  const int own = std::exchange(own_drivers_, 0);  // not there yet
+      [&](const auto& topic) { speaks_for_nodes |= is_of_nodes(topic.writers) && topics.contains(topic.name); });
+  const auto nodes = bus.reader(topics::node_status);
+  const auto drivers = bus.reader(topics::device_state);
+  std::set<std::string> pages;  // nodes that write what drivers write, and have no motors
   for (const std::int64_t end = now_ns() + kLook; now_ns() < end && !shutdown_requested();) {
-    bus_.wait(std::chrono::milliseconds(50));
-    look();
-    while (const auto status = nodes_->take())
-      if (speaks_for_nodes_ && (status->role == "haptic" || status->role == "deform"))
+    bus.wait(std::chrono::milliseconds(50));
+    while (const auto status = nodes->take()) {
+      if (status->role == "web" || status->role == "ros") pages.insert(status->node);
+      if (speaks_for_nodes && (status->role == "haptic" || status->role == "deform"))
         throw std::runtime_error(
             fmt::format("{} lives in {}: what is played would mix with what it says; end it, or play into another "
                         "--domain",
-                        status->node, bus_.place()));
+                        status->node, bus.place()));
+    }
   }
-  own_drivers_ = own;
-}
-
-void ReplayGuard::look() const {
-  if (moves_motors_ && drivers_->writers() > own_drivers_)
+  if (topics.contains(topics::force_state.name) && drivers->writers() > static_cast<int>(pages.size()))
     throw std::runtime_error(
         fmt::format("a driver of a device is in {}: its motors would give the forces of the log; end it, play into "
                     "another --domain, or play other topics than force_state",
-                    bus_.place()));
+                    bus.place()));
 }
 
 }  // namespace palpate

@@ -93,6 +93,13 @@ TEST_F(ToolsVerify, AReplayDoesNotSpeakForNodesThatLiveNorMoveTheMotorsOfADriver
     const auto driver = bus->writer(topics::device_state);
     testing::expect_refusal(play, {"a driver of a device is in ", "its motors would give the forces of the log"});
     EXPECT_EQ(run_program(play + " --topic tool_state").status, 0);
+    NodeStatus page;
+    page.node = "web 8@here";
+    page.role = "web";
+    const auto pages = bus->writer(topics::node_status);
+    ASSERT_TRUE(pages->write(page));
+    const auto shown = run_program(play);
+    EXPECT_EQ(shown.status, 0) << "a page has no motors: " << shown.err;
   }
   NodeStatus status;
   status.node = "haptic 7@here";

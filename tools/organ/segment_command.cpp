@@ -173,7 +173,7 @@ void segment_image(const SegmentOptions& o) {
   Segmentation segmentation = of_file(o.image, [&] { return segment(smoothed, seeds, rules); });
   if (!o.preview.empty()) {
     say_progress("drawing the slices");
-    write_slice_pictures(image, smoothed.sharp, segmentation, o.preview);
+    write_slice_pictures(image, smoothed.twiced, segmentation, o.preview);
   }
   write_label_volume(volume, segmentation.inside, o.output);
   for (Finding& finding : segmentation.findings)

@@ -34,10 +34,10 @@ std::vector<char> start_of(const ScalarGrid& grey, const std::vector<std::size_t
 
 /// The two kinds of smoothed values differ: a seed is in its own range by both.
 GreyRange range_for(const SmoothedImage& image, const std::vector<std::size_t>& seeds) {
-  GreyRange range = range_around(image.even, image.width, seeds);
+  GreyRange range = range_around(image.gauss, image.width, seeds);
   for (const std::size_t seed : seeds) {
-    range.low = std::min<double>(range.low, image.sharp.value[seed]);
-    range.high = std::max<double>(range.high, image.sharp.value[seed]);
+    range.low = std::min<double>(range.low, image.twiced.value[seed]);
+    range.high = std::max<double>(range.high, image.twiced.value[seed]);
   }
   return range;
 }
@@ -93,11 +93,11 @@ double SegmentedSlice::on_edge() const {
 SmoothedImage smoothed_image(const ScalarGrid& grey, double width) {
   SmoothedImage image{width, grey, grey};
   if (width <= 0) return image;
-  smooth(image.even, Eigen::Vector3d::Constant(width));
-  image.sharp = image.even;
-  smooth(image.sharp, Eigen::Vector3d::Constant(width));
+  smooth(image.gauss, Eigen::Vector3d::Constant(width));
+  image.twiced = image.gauss;
+  smooth(image.twiced, Eigen::Vector3d::Constant(width));
   for (std::size_t i = 0; i < grey.value.size(); ++i)
-    image.sharp.value[i] = 2 * image.even.value[i] - image.sharp.value[i];
+    image.twiced.value[i] = 2 * image.gauss.value[i] - image.twiced.value[i];
   return image;
 }
 
@@ -105,11 +105,11 @@ Segmentation segment(const SmoothedImage& image, const std::vector<std::size_t>&
                      const SegmentationRules& rules) {
   Segmentation s;
   s.range = rules.range ? *rules.range : range_for(image, seeds);
-  s.inside = start_of(image.sharp, seeds, rules, s.range);
-  const GreyLevel level = level_of(image.sharp, s.inside);
-  const GridShape& shape = image.sharp.shape;
+  s.inside = start_of(image.twiced, seeds, rules, s.range);
+  const GreyLevel level = level_of(image.twiced, s.inside);
+  const GridShape& shape = image.twiced.shape;
   for (int k = 0; k < shape.count[2]; ++k)
-    s.slices.push_back(segment_slice(image.sharp, k, level, rules, &s.inside[k * layer_of(shape)]));
+    s.slices.push_back(segment_slice(image.twiced, k, level, rules, &s.inside[k * layer_of(shape)]));
   agree_with_neighbours(shape, rules.by_hand, s.inside);
   if (std::ranges::count(s.inside, 1) == 0)
     throw std::runtime_error("nothing is left of the region in its slices: it is a voxel or two; give a wider --range");

@@ -7,13 +7,14 @@
 
 namespace palpate {
 
-/// Grey values without most of their noise.
+/// Grey values without most of their noise, in two ways. A Gaussian alone gives values between those of two tissues
+/// where they meet, but moves a border of radius r inward by about width^2 / r. Twicing (Tukey, Exploratory Data
+/// Analysis, 1977), which smooths what the Gaussian took away and gives it back, leaves borders in place, but goes
+/// beyond both values beside them.
 struct SmoothedImage {
-  double width;     ///< [m] the Gaussian's deviation; 0: the values are as they were
-  ScalarGrid even;  ///< by a Gaussian: between two tissues it is between their values
-  ScalarGrid
-      sharp;  ///< by twicing (Tukey, Exploratory Data Analysis, 1977): what the Gaussian took away is smoothed and
-              ///< given back. A border of radius r stays in place, which the Gaussian moves by about width^2 / r
+  double width;       ///< [m] the Gaussian's deviation; 0: the values are as they were
+  ScalarGrid gauss;   ///< by the Gaussian
+  ScalarGrid twiced;  ///< by twicing
 };
 SmoothedImage smoothed_image(const ScalarGrid& grey, double width);  ///< width: the Gaussian's deviation [m], or 0
 
