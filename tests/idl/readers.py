@@ -30,8 +30,8 @@ def names_of(struct):
 
 
 def read_of(struct):
-    names = names_of(struct)
-    return {field for text, read_there in sources if any(name in text for name in names) for field in read_there}
+    named = re.compile("|".join(rf"\b{name}\b" for name in names_of(struct)))
+    return {field for text, read_there in sources if named.search(text) for field in read_there}
 
 
 read = {s.name: read_of(s) | asked for s in structs}
