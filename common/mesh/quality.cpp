@@ -7,31 +7,14 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <stdexcept>
 
+#include "common/geometry/joined_sets.hpp"
 #include "common/mesh/faults.hpp"
 #include "common/mesh/surface.hpp"
 
 namespace palpate {
 namespace {
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int root(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  /// The smaller root stays, so that a set is known by its first member.
-  void join(int a, int b) {
-    a = root(a), b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 void check_numbers_and_coordinates(const TetMesh& mesh, FaultList& faults) {
   const int count = static_cast<int>(mesh.nodes.size());
@@ -79,7 +62,7 @@ void check_shapes(const TetMesh& mesh, FaultList& faults) {
 }
 
 void check_connection(const TetMesh& mesh, FaultList& faults) {
-  DisjointSets sets(mesh.nodes.size());
+  JoinedSets sets(mesh.nodes.size());
   for (const auto& t : mesh.tetrahedra) {
     for (int c = 1; c < 4; ++c) sets.join(t[0], t[c]);
   }
@@ -88,7 +71,7 @@ void check_connection(const TetMesh& mesh, FaultList& faults) {
   };
   std::map<int, Part> parts;
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
-    ++parts.emplace(sets.root(mesh.tetrahedra[e][0]), Part{e, 0}).first->second.size;
+    ++parts.emplace(sets.leader(mesh.tetrahedra[e][0]), Part{e, 0}).first->second.size;
   }
   for (const auto& [root, part] : parts) {
     if (part.first == 0) continue;
@@ -136,7 +119,7 @@ void check_boundary_edges(const Surface& surface, FaultList& faults) {
 // Corners of triangles around one vertex hang together where their triangles share an edge at that vertex.
 void check_boundary_vertices(const Surface& surface, FaultList& faults) {
   const auto& triangles = surface.triangles;
-  DisjointSets corners(3 * triangles.size());
+  JoinedSets corners(3 * triangles.size());
   std::map<std::array<int, 2>, int> first_corner;  // (vertex, other end of the edge)
   for (int corner = 0; corner < static_cast<int>(3 * triangles.size()); ++corner) {
     const auto& t = triangles[corner / 3];
@@ -147,7 +130,7 @@ void check_boundary_vertices(const Surface& surface, FaultList& faults) {
   }
   std::map<int, int> fan_of_vertex;
   for (int corner = 0; corner < static_cast<int>(3 * triangles.size()); ++corner) {
-    const int vertex = triangles[corner / 3][corner % 3], fan = corners.root(corner);
+    const int vertex = triangles[corner / 3][corner % 3], fan = corners.leader(corner);
     if (fan == corner && !fan_of_vertex.emplace(vertex, fan).second) {
       faults.add(fmt::format("element {}: not manifold, two parts of the surface meet only in node {}",
                              surface.tetrahedra[corner / 3], vertex));

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "tools/organ/joined_sets.hpp"
+#include "common/geometry/joined_sets.hpp"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "tools/organ/joined_sets.hpp"
+#include "common/geometry/joined_sets.hpp"
 #include "tools/organ/voxel_pieces.hpp"
 
 namespace palpate {

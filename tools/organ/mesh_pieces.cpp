@@ -5,9 +5,9 @@
 #include <cmath>
 #include <map>
 
+#include "common/geometry/joined_sets.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/mesh/surface.hpp"
-#include "tools/organ/joined_sets.hpp"
 #include "tools/organ/surface_shells.hpp"
 
 namespace palpate {

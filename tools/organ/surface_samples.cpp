@@ -5,7 +5,7 @@
 #include <map>
 #include <unordered_map>
 
-#include "tools/organ/joined_sets.hpp"
+#include "common/geometry/joined_sets.hpp"
 
 namespace palpate {
 namespace {

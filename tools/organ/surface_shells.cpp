@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "tools/organ/joined_sets.hpp"
+#include "common/geometry/joined_sets.hpp"
 #include "tools/organ/surface_library.hpp"
 
 namespace palpate {
