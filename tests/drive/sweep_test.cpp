@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/tools/program_result.hpp"
+#include "tools/shared/shell_line.hpp"
 
 namespace palpate::drive {
 namespace {

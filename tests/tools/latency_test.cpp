@@ -173,10 +173,27 @@ TEST(ToolsTop, SaysThatNobodyIsThere) {
   EXPECT_NE(look.out.find("no node is heard of"), std::string::npos) << look.out;
 }
 
+TEST(ToolsLatency, TakesTurnsWithTheVendorsTool) {
+  const std::string command = program("palpate") + " latency --ddsperf 2 --seconds 1 --rate 400 --json --udp-port " +
+                              std::to_string(own_udp_port()) + " --domain " + std::to_string(own_domain());
+  const ProgramResult without = run_program("PATH=/nowhere " + command);
+  EXPECT_EQ(without.status, 1);
+  EXPECT_NE(without.err.find("ddsperf is not installed"), std::string::npos) << without.err;
+  const ProgramResult result = run_program(command);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json report = json::parse(result.out);
+  for (const char* way : {"round_trip_us", "bare_dds_listener_us", "ddsperf_us"}) {
+    ASSERT_EQ(report[way].size(), 2u) << way;
+    for (const double us : report[way]) EXPECT_GT(us, 1) << way;
+  }
+  EXPECT_GT(report["ratio_to_ddsperf"].get<double>(), 0.1);
+}
+
 TEST(ToolsLatency, SaysWhatIsMissing) {
   const std::string palpate = program("palpate") + " latency --domain " + std::to_string(own_domain());
   expect_refusal(palpate + " nowhere.toml", {"nowhere.toml"});
   expect_refusal(palpate + " --interface lo", {"--peer"});
+  expect_refusal(palpate + " --ddsperf 2 --attach", {"--ddsperf", "two processes here"});
 }
 
 }  // namespace

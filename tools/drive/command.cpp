@@ -20,6 +20,7 @@
 #include "tools/shared/jobs_option.hpp"
 #include "tools/shared/say_stages.hpp"
 #include "tools/shared/set_option.hpp"
+#include "tools/shared/shell_line.hpp"
 
 namespace palpate {
 namespace {

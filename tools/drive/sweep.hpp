@@ -22,9 +22,6 @@ Axis parse_axis(const std::string& text);
 /// std::runtime_error for more than kMaxPoints.
 std::vector<std::vector<SceneChange>> grid(const std::vector<SceneChange>& always, const std::vector<Axis>& axes);
 
-/// A command line in words, as a shell reads it.
-std::string shell_line(const std::vector<std::string>& arguments);
-
 /// Runs each command in a process of its own, `jobs` at a time, and takes up the result that each prints; a process
 /// that prints none has failed. `said` hears of each as it ends. Ctrl-C ends them all, and what has come is returned.
 std::vector<PointResult> run_points(const std::vector<std::vector<std::string>>& commands, int jobs,

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,10 +11,10 @@
 #include "common/realtime/periodic.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/scene.hpp"
+#include "tools/latency/beside_ddsperf.hpp"
 #include "tools/latency/hop_json.hpp"
 #include "tools/latency/observe.hpp"
-#include "tools/latency/round_trips.hpp"
-#include "tools/shared/child_process.hpp"
+#include "tools/latency/ways.hpp"
 #include "tools/shared/commands.hpp"
 #include "tools/shared/network_options.hpp"
 #include "tools/study/output_folder.hpp"
@@ -23,89 +24,19 @@ namespace palpate {
 namespace {
 
 using namespace std::chrono_literals;
-using latency::Echo;
-using latency::RoundTrips;
-using latency::Side;
+using latency::kNames;
+using latency::kTitles;
+using latency::LatencyOptions;
 using Json = nlohmann::ordered_json;
 
-struct LatencyOptions {
-  BusSettings network;
-  std::string scene, out;
-  double rate = 1000, seconds = 10;
-  int port = 7390;
-  bool answer = false, attach = false, json = false;
-};
-
-constexpr std::array kNames{"round_trip", "bare_dds", "bare_dds_listener", "bare_udp"};
-constexpr std::array kTitles{"palpate's bus", "bare Cyclone DDS", "  by listener", "bare UDP"};
 /// Of three periods, and over and over: each way comes as often after each of the others.
 constexpr std::array<std::size_t, 12> kOrder{0, 1, 2, 3, 0, 2, 1, 3, 2, 0, 3, 1};
-using Ways = std::array<std::unique_ptr<Echo>, kNames.size()>;
-
-Ways open_ways(const LatencyOptions& o, Side side) {
-  const std::string host = o.network.peers.empty() ? "127.0.0.1" : o.network.peers.front();
-  return {latency::bus_echo(o.network, side), latency::dds_echo(o.network, side, latency::Wake::waitset),
-          latency::dds_echo(o.network, side, latency::Wake::listener), latency::udp_echo(host, o.port, side)};
-}
-
-/// Sends back whatever comes, over each way on a thread of its own, until told to stop.
-void answer(const LatencyOptions& o) {
-  Ways ways = open_ways(o, Side::answers);
-  catch_shutdown_signals();
-  std::vector<std::jthread> threads;
-  for (auto& way : ways)
-    if (!way->listen([&way](std::uint64_t seq) { way->send(seq); }))
-      threads.emplace_back([&way](const std::stop_token& stop) {
-        while (!stop.stop_requested())
-          if (const std::uint64_t seq = way->receive(20ms)) way->send(seq);
-      });
-  if (!o.json) fmt::print("answering in domain {} and on UDP port {}\n", o.network.domain, o.port);
-  std::fflush(stdout);
-  while (!shutdown_requested()) sleep_until_ns(now_ns() + 20'000'000);
-}
-
-std::vector<std::string> with_network(std::vector<std::string> command, const BusSettings& network) {
-  command.insert(command.end(), {"--domain", std::to_string(network.domain)});
-  if (!network.interface.empty()) command.insert(command.end(), {"--interface", network.interface});
-  for (const std::string& peer : network.peers) command.insert(command.end(), {"--peer", peer});
-  if (!network.keys.empty()) command.insert(command.end(), {"--keys", network.keys});
-  return command;
-}
-
-/// The other side, on this machine, where no other is named.
-std::optional<ChildProcess> answerer_here(const LatencyOptions& o) {
-  if (!o.network.peers.empty()) return std::nullopt;
-  return ChildProcess("latency --answer", with_network({sibling_program("palpate"), "latency", "--answer", "--json",
-                                                        "--udp-port", std::to_string(o.port)},
-                                                       o.network));
-}
 
 std::vector<std::string> run_command(const LatencyOptions& o) {
   std::vector<std::string> command{sibling_program("palpate"),      "run", o.scene, "--processes", "3", "--domain",
                                    std::to_string(o.network.domain)};
   if (!o.network.keys.empty()) command.insert(command.end(), {"--keys", o.network.keys});
   return command;
-}
-
-void find_other_side(std::array<std::unique_ptr<RoundTrips>, kNames.size()>& ways, const LatencyOptions& o) {
-  const std::int64_t limit = now_ns() + 10 * kNsPerS;
-  const auto silent = [&]() -> std::string {
-    std::string text;
-    for (std::size_t i = 0; i < ways.size(); ++i)
-      if (ways[i]->back() == 0) text += (text.empty() ? "" : ", ") + std::string(kNames[i]);
-    return text;
-  };
-  while (!silent().empty() && !shutdown_requested()) {
-    if (now_ns() > limit)
-      throw std::runtime_error(
-          fmt::format("latency: no answer over {} within 10 s; `palpate latency --answer` has to run on the other "
-                      "host, in domain {}, and "
-                      "UDP port {} has to be open there",
-                      silent(), o.network.domain, o.port));
-    for (auto& way : ways)
-      if (way->back() == 0) way->send();
-    sleep_until_ns(now_ns() + 20'000'000);
-  }
 }
 
 struct Result {
@@ -117,11 +48,8 @@ struct Result {
 /// The ways take turns within each period, so that a change of the host's load meets all of them, and in such an order
 /// that none has the better of what went before: that leaves threads awake and caches warm, or cores busy.
 Result measure(const LatencyOptions& o) {
-  const auto other = answerer_here(o);
-  std::array<std::unique_ptr<RoundTrips>, kNames.size()> ways;
-  Ways echoes = open_ways(o, Side::asks);
-  for (std::size_t i = 0; i < ways.size(); ++i) ways[i] = std::make_unique<RoundTrips>(std::move(echoes[i]));
-  find_other_side(ways, o);
+  const auto other = latency::answerer_here(o);
+  const auto ways = latency::open_ways({0, 1, 2, 3}, o);
 
   const auto bus = make_dds_bus(o.network);
   std::optional<latency::HopObserver> observer;
@@ -140,10 +68,10 @@ Result measure(const LatencyOptions& o) {
     }
     observer.emplace(*bus);
   }
-  if (shutdown_requested()) throw Interrupted("latency: stopped before anything was measured");
+  if (shutdown_requested()) throw Interrupted(latency::kStopped);
 
   PeriodicTimer timer(static_cast<double>(kNames.size()) * o.rate, 0);
-  const auto warm_up = static_cast<std::uint64_t>(kNames.size() * o.rate * 0.3),
+  const auto warm_up = static_cast<std::uint64_t>(kNames.size() * o.rate * latency::kWarmUpSeconds),
              end = warm_up + static_cast<std::uint64_t>(kNames.size() * o.rate * o.seconds);
   bool begun = false;
   for (std::uint64_t i = timer.wait(); i < end && !shutdown_requested(); i = timer.wait()) {
@@ -154,7 +82,7 @@ Result measure(const LatencyOptions& o) {
     ways[kOrder[i % kOrder.size()]]->send();
     if (observer && i % 16 == 0) observer->take();
   }
-  if (!begun) throw Interrupted("latency: stopped before anything was measured");
+  if (!begun) throw Interrupted(latency::kStopped);
   Result result;
   for (std::size_t i = 0; i < ways.size(); ++i) result.trips[i] = ways[i]->finish();
   if (observer) result.hops = observer->times();
@@ -232,6 +160,40 @@ void print_text(const Result& r) {
     fmt::print("the nodes' clocks are known to {:.1f} us\n", 1e-3 * static_cast<double>(r.hops.uncertainty_ns()));
 }
 
+/// Median, least and most of the turns.
+struct Spread {
+  double median = 0, least = 0, most = 0;
+};
+Spread spread_of(std::vector<double> values) {
+  std::ranges::sort(values);
+  return {values[values.size() / 2], values.front(), values.back()};
+}
+
+void print_turns(const LatencyOptions& o, const latency::DdsperfTurns& turns) {
+  const std::array columns{&turns.bus, &turns.listener, &turns.ddsperf};
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < turns.bus.size(); ++i) ratios.push_back(turns.bus[i] / turns.ddsperf[i]);
+  const Spread ratio = spread_of(ratios);
+  if (o.json) {
+    constexpr std::array kKeys{"round_trip_us", "bare_dds_listener_us", "ddsperf_us"};
+    Json json;
+    for (std::size_t i = 0; i < columns.size(); ++i) json[kKeys[i]] = *columns[i];
+    json["ratio_to_ddsperf"] = ratio.median;
+    json["rate_hz"] = o.rate;
+    json["seconds"] = o.seconds;
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{:22} {:>10} {:>10} {:>10}\n", "there and back [us]", "median", "least", "most");
+  constexpr std::array kRows{"palpate's bus", "bare DDS by listener", "ddsperf by listener"};
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const Spread s = spread_of(*columns[i]);
+    fmt::print("{:22} {:10.1f} {:10.1f} {:10.1f}\n", kRows[i], s.median, s.least, s.most);
+  }
+  fmt::print("the bus takes {:.2f} times as long as ddsperf (median of {} turns, {:.2f} to {:.2f})\n", ratio.median,
+             o.ddsperf_turns, ratio.least, ratio.most);
+}
+
 /// Figures as a file has them.
 constexpr const char* kFile = "latency.json";
 std::string beginning_of_file() {
@@ -239,15 +201,19 @@ std::string beginning_of_file() {
 }
 
 void run(LatencyOptions& o) {
-  if (o.answer) return answer(o);
+  if (o.answer) return latency::answer(o);
   if (!o.scene.empty()) {
     const Scene scene = load_scene(o.scene);
     if (scene.network.security && o.network.keys.empty()) o.network.keys = scene.network.security->keys;
   }
   if (!o.network.interface.empty() && o.network.peers.empty())
     throw std::runtime_error("latency: with --interface, name the other host by --peer");
+  if (o.ddsperf_turns > 0 &&
+      (!o.scene.empty() || o.attach || !o.out.empty() || !o.network.peers.empty() || !o.network.keys.empty()))
+    throw std::runtime_error("latency: --ddsperf is between two processes here, without a scene, --keys or --output");
   if (!o.out.empty()) prepare_folder(o.out, {kFile, beginning_of_file()}, {"latency.png"});
   catch_shutdown_signals();
+  if (o.ddsperf_turns > 0) return print_turns(o, latency::beside_ddsperf(o));
   const Result result = measure(o);
   const Json json = json_of(o, result);
   if (o.json)
@@ -275,11 +241,16 @@ void add_latency_command(cli::Command& app) {
   command.add_flag("--answer", o->answer, "Be the other side: send back what comes, until Ctrl-C");
   command.add_option("--rate", o->rate, "Messages a second over each way [Hz]").between(1.0, 5000.0).show_default();
   command.add_option("--seconds", o->seconds, "How long").positive().show_default();
+  command
+      .add_option("--ddsperf", o->ddsperf_turns,
+                  "Instead, so many turns of the bus and of the vendor's ddsperf, each alone for --seconds, here")
+      .between(1, 1000);
   command.add_option("--udp-port", o->port, "Port of the bare UDP messages").between(1024, 65535).show_default();
   command.add_flag("--json", o->json, "Print JSON");
   command.add_option("-o,--output", o->out, "Folder for latency.json and its plot, which take no other file's place");
   add_network_options(command, o->network, "latency");
-  command.examples({"palpate latency scenes/liver.toml --seconds 10 -o out/latency", "palpate latency --answer"});
+  command.examples({"palpate latency scenes/liver.toml --seconds 10 -o out/latency", "palpate latency --answer",
+                    "palpate latency --ddsperf 10 --seconds 4"});
   command.does([o] { run(*o); });
 }
 

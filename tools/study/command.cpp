@@ -1,13 +1,17 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "common/cli/progress.hpp"
+#include "common/realtime/shutdown.hpp"
 #include "common/scene/scene_changes.hpp"
+#include "tools/shared/child_process.hpp"
 #include "tools/shared/set_option.hpp"
+#include "tools/shared/shell_line.hpp"
 #include "tools/study/commands.hpp"
 #include "tools/study/growth.hpp"
 #include "tools/study/run_script.hpp"
@@ -18,8 +22,9 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> scenes, set;
-  std::string out, budget;
-  bool quick = false, growth = false, json = false;
+  std::string out, budget, references;
+  int jobs = 1, setting = -1;
+  bool quick = false, growth = false, json = false, tasks = false;
 };
 
 /// "1ms", "250us", "0.5 ms" or "0.001s".
@@ -77,22 +82,52 @@ std::vector<Scene> load_scenes(const std::vector<std::string>& files, const std:
   return scenes;
 }
 
+/// The command that settles one setting of a scene alone.
+std::vector<std::string> setting_alone(const Arguments& arguments, const Scene& scene,
+                                       const std::filesystem::path& folder, const std::filesystem::path& references,
+                                       std::size_t setting) {
+  std::vector<std::string> words{sibling_program("palpate"), "study", std::filesystem::absolute(scene.file).string()};
+  for (const std::string& change : arguments.set) words.insert(words.end(), {"--set", change});
+  words.insert(words.end(), {"--output", std::filesystem::absolute(folder).string(), "--setting",
+                             std::to_string(setting), "--jobs", std::to_string(arguments.jobs)});
+  if (!references.empty()) words.insert(words.end(), {"--references", std::filesystem::absolute(references).string()});
+  if (arguments.quick) words.emplace_back("--quick");
+  return words;
+}
+
 void run(const Arguments& arguments) {
-  study::StudyOptions options{.quick = arguments.quick, .budget_text = arguments.budget, .say = tell};
+  study::StudyOptions options{
+      .quick = arguments.quick, .references = arguments.references, .budget_text = arguments.budget, .say = tell};
+  options.jobs = arguments.jobs;
   if (!arguments.budget.empty()) options.budget = seconds_of(arguments.budget);
   const std::filesystem::path out = arguments.out;
   const bool several = arguments.scenes.size() > 1 || arguments.growth;  // a folder each, and an index
   if (arguments.scenes.empty() && !arguments.growth)
     throw std::runtime_error("study: name a scene, or ask for --growth");
+  if (several && arguments.setting >= 0) throw std::runtime_error("study: --setting is of one scene");
   std::FILE* const to = arguments.json ? stderr : stdout;
-  if (several) options.references = out / "references";
+  if (several && options.references.empty()) options.references = out / "references";
+  if (arguments.jobs > 1) {
+    setenv("OMP_NUM_THREADS", "1", 0);  // each setting keeps to one core
+    catch_shutdown_signals();
+  }
   for (const Scene& scene : load_scenes(arguments.scenes, parse_changes(arguments.set))) {
     const auto folder = several ? out / scene.file.stem() : out;
+    options.setting_alone = [&](std::size_t setting) {
+      return setting_alone(arguments, scene, folder, options.references, setting);
+    };
+    if (arguments.tasks) {
+      for (std::size_t i = 0, count = count_settings(scene, options); i < count; ++i)
+        fmt::print("{}\n", shell_line(options.setting_alone(i)));
+      continue;
+    }
+    if (arguments.setting >= 0) return run_setting(scene, folder, options, static_cast<std::size_t>(arguments.setting));
     const study::Result result = study::run_study(scene, folder, options);
     if (arguments.json)
       for (const study::Row& row : result.rows) print_json(row);
     make_page(folder, to);
   }
+  if (arguments.tasks) return;
   if (arguments.growth) study::measure_growth(out, arguments.quick, tell);
   if (several) make_page(out, to);
 }
@@ -115,9 +150,24 @@ void add_study_command(cli::Command& app) {
                    "How a step's time grows over surface nodes, contacts, edges, modes and particles");
   command.add_flag("--json", arguments->json, "Print one line of JSON a setting");
   command.add_flag("--quick", arguments->quick, "Fewer patches, samples and knobs");
+  command
+      .add_option(
+          "--jobs", arguments->jobs,
+          "Settings at the same time, each in a process of its own; their steps are timed beside one another then")
+      .between(1, 1024)
+      .show_default();
+  command.add_flag("--tasks", arguments->tasks,
+                   "Print the command of each setting, one a line; what they leave in the folder is what a run without "
+                   "this option goes on with");
+  command
+      .add_option("--setting", arguments->setting, "Settle this setting of the scene alone, from 0, as --tasks has it")
+      .between(0, 1'000'000);
+  command.add_option("--references", arguments->references,
+                     "Folder where references are kept, instead of the output's");
   command.tells_progress();
   command.examples({"palpate study scenes/plate.toml --quick -o out/study",
-                    "palpate study scenes/liver.toml --budget 200us -o out/liver"});
+                    "palpate study scenes/liver.toml --budget 200us -o out/liver",
+                    "palpate study scenes/liver.toml --tasks -o out/liver > tasks.sh"});
   command.does([arguments] { run(*arguments); });
 }
 

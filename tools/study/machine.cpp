@@ -21,11 +21,16 @@ std::string processor() {
 
 }  // namespace
 
-void describe_machine(const std::filesystem::path& folder) {
-  std::ofstream out(folder / "machine.txt", std::ios::app);
-  out << fmt::format("{}, {} cores; palpate {} ({}); {:%Y-%m-%d %H:%M}\n", processor(),
-                     std::thread::hardware_concurrency(), PALPATE_VERSION, code_path(),
-                     fmt::localtime(std::time(nullptr)));
+void describe_machine(const std::filesystem::path& folder, int jobs) {
+  const std::string today =
+      fmt::format("{}, {} cores{}; palpate {} ({}); {:%Y-%m-%d}", processor(), std::thread::hardware_concurrency(),
+                  jobs > 1 ? fmt::format(", {} settings at the same time", jobs) : "", PALPATE_VERSION, code_path(),
+                  fmt::localtime(std::time(nullptr)));
+  std::ifstream in(folder / "machine.txt");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with(today)) return;
+  std::ofstream(folder / "machine.txt", std::ios::app)
+      << fmt::format("{} {:%H:%M}\n", today, fmt::localtime(std::time(nullptr)));
 }
 
 }  // namespace palpate::study

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "common/realtime/shutdown.hpp"
+#include "tools/shared/run_children.hpp"
 #include "tools/study/budget.hpp"
 #include "tools/study/kinds.hpp"
 #include "tools/study/machine.hpp"
@@ -56,6 +58,79 @@ void spend(const Scene& scene, const Methods& methods, const Result& result, con
   options.say(text);
 }
 
+/// All settings of a scene's methods, and what is kept of them in the study's folder.
+class Sweep {
+ public:
+  Sweep(const Scene& scene, const std::filesystem::path& folder, const StudyOptions& options)
+      : scene_(scene), folder_(folder), options_(options), store_(prepared(folder), study_key(scene, options.quick)) {
+    if (store_.is_new()) std::filesystem::remove(folder / "machine.txt");
+    if (options_.references.empty()) options_.references = folder / "references";
+    methods_ = make_methods(scene, options_);
+    for (const auto& method : methods_)
+      for (const Point& point : method->points()) settings_.emplace_back(method.get(), point);
+  }
+
+  std::size_t size() const { return settings_.size(); }
+  const Methods& methods() const { return methods_; }
+
+  /// What is kept of a setting, or else what comes of it, which is kept.
+  Result settle(std::size_t i) const {
+    const auto& [method, point] = settings_[i];
+    const auto begin = std::chrono::steady_clock::now();
+    if (const auto found = store_.find(point)) {
+      say(i, "kept");
+      return *found;
+    }
+    describe_machine(folder_, options_.jobs);
+    Result result = evaluate(scene_, *method, point);
+    store_.keep(point, result);
+    say(i, fmt::format("{:.1f} s", seconds_since(begin)));
+    return result;
+  }
+
+  /// What is not kept yet, each setting in a process of its own.
+  void settle_beside_one_another() const {
+    std::vector<std::size_t> missing;
+    std::vector<std::vector<std::string>> commands;
+    for (std::size_t i = 0; i < size(); ++i)
+      if (!store_.find(settings_[i].second)) {
+        missing.push_back(i);
+        commands.push_back(options_.setting_alone(i));
+      }
+    std::size_t done = 0;
+    run_children("study", commands, options_.jobs,
+                 {.printed = [](std::size_t, const std::string&) {},
+                  .ended =
+                      [&](std::size_t c, int status) {
+                        ++done;
+                        if (status != 0)  // it is computed here then
+                          say(missing[c], fmt::format("its process ended with status {}", status));
+                      }});
+    if (shutdown_requested())
+      throw Interrupted(fmt::format("study: stopped; {} of {} settings are kept in {}", size() - missing.size() + done,
+                                    size(), folder_.string()));
+  }
+
+ private:
+  static const std::filesystem::path& prepared(const std::filesystem::path& folder) {
+    prepare_folder(folder, {"study.csv", fmt::format("{}\n", kStudyHead)}, {"index.html"});
+    return folder;
+  }
+
+  void say(std::size_t i, const std::string& what) const {
+    const Point& point = settings_[i].second;
+    options_.say(fmt::format("{} {}/{}: {}, {} = {}: {}", scene_.file.stem().string(), i + 1, size(), point.method,
+                             point.knob, point.value, what));
+  }
+
+  const Scene& scene_;
+  std::filesystem::path folder_;
+  StudyOptions options_;
+  Store store_;
+  Methods methods_;
+  std::vector<std::pair<Method*, Point>> settings_;
+};
+
 }  // namespace
 
 Methods make_methods(const Scene& scene, const StudyOptions& options) {
@@ -69,32 +144,30 @@ Methods make_methods(const Scene& scene, const StudyOptions& options) {
 }
 
 Result run_study(const Scene& scene, const std::filesystem::path& folder, const StudyOptions& options) {
-  prepare_folder(folder, {"study.csv", fmt::format("{}\n", kStudyHead)}, {"index.html"});
-  const Store store(folder, study_key(scene, options.quick));
-  if (store.is_new()) std::filesystem::remove(folder / "machine.txt");
-  StudyOptions here = options;
-  if (here.references.empty()) here.references = folder / "references";
-  const Methods methods = make_methods(scene, here);
-  std::vector<std::pair<Method*, Point>> all;
-  for (const auto& method : methods)
-    for (const Point& point : method->points()) all.emplace_back(method.get(), point);
+  const Sweep sweep(scene, folder, options);
+  if (options.jobs > 1) sweep.settle_beside_one_another();
   Result result;
-  bool described = false;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto& [method, point] = all[i];
-    const auto begin = std::chrono::steady_clock::now();
-    const auto found = store.find(point);
-    if (!found && !described) describe_machine(folder), described = true;
-    const Result one = found ? *found : evaluate(scene, *method, point);
-    if (!found) store.keep(point, one);
-    append(result, one);
+  for (std::size_t i = 0; i < sweep.size(); ++i) {
+    append(result, sweep.settle(i));
     write_result(result, folder);
-    options.say(fmt::format("{} {}/{}: {}, {} = {}: {}", scene.file.stem().string(), i + 1, all.size(), point.method,
-                            point.knob, point.value, found ? "kept" : fmt::format("{:.1f} s", seconds_since(begin))));
   }
   std::filesystem::remove(folder / "budget.txt");
-  if (options.budget) spend(scene, methods, result, folder, options);
+  if (options.budget) spend(scene, sweep.methods(), result, folder, options);
   return result;
+}
+
+void run_setting(const Scene& scene, const std::filesystem::path& folder, const StudyOptions& options,
+                 std::size_t setting) {
+  const Sweep sweep(scene, folder, options);
+  if (setting >= sweep.size())
+    throw std::runtime_error(fmt::format("study: {} has {} settings", scene.file.stem().string(), sweep.size()));
+  sweep.settle(setting);
+}
+
+std::size_t count_settings(const Scene& scene, const StudyOptions& options) {
+  std::size_t count = 0;
+  for (const auto& method : make_methods(scene, options)) count += method->points().size();
+  return count;
 }
 
 }  // namespace palpate::study
