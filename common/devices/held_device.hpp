@@ -33,6 +33,7 @@ class HeldDevice : public Device {
   Trocar trocar_;
   HandMotion motion_;
   VirtualCoupling coupling_;
+  Eigen::Vector3d led_to_ = Eigen::Vector3d::Zero();  ///< [m] the tip, in the last step
   Lease lease_;
   Latest<DeviceSample> newest_;
   std::unique_ptr<Device> until_taken_;  ///< null: it stands

@@ -78,15 +78,16 @@ void ToolRig::ask(const ToolLoad& load) {
   output_.flags |= safety_.limit(port_.asked);
 }
 
+// Moving tissue hears of it some steps later: whatever is gone by then goes evenly.
 void ToolRig::slide_out(PortForce& wanted) {
-  if (lets_go_) {
-    let_go_ = {wanted_.force - wanted.force, wanted_.torque - wanted.torque, wanted_.grip - wanted.grip};
-    sliding_ = 1;
+  if (lets_go_) sliding_ = 1;
+  if (sliding_ > 0) {
+    const double share = std::min(slide_step_ / sliding_, 1.0);  // of the way that is left
+    wanted.force = wanted_.force + share * (wanted.force - wanted_.force);
+    wanted.torque = wanted_.torque + share * (wanted.torque - wanted_.torque);
+    wanted.grip = wanted_.grip + share * (wanted.grip - wanted_.grip);
+    sliding_ = std::max(sliding_ - slide_step_, 0.0);
   }
-  sliding_ = std::max(sliding_ - slide_step_, 0.0);
-  wanted.force += sliding_ * let_go_.force;
-  wanted.torque += sliding_ * let_go_.torque;
-  wanted.grip += sliding_ * let_go_.grip;
   wanted_ = wanted;
 }
 
@@ -120,11 +121,9 @@ void ToolRig::state(State& s) {
   end_->state(s);
   s.value(handle_);
   s.value(held_);
-  for (PortForce* f : {&wanted_, &let_go_}) {
-    s.value(f->force);
-    s.value(f->torque);
-    s.value(f->grip);
-  }
+  s.value(wanted_.force);
+  s.value(wanted_.torque);
+  s.value(wanted_.grip);
   s.value(sliding_);
 }
 

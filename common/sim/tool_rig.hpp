@@ -77,8 +77,8 @@ class ToolRig {
   double handle_ = 0;                ///< [rad] in the last step
   double fade_step_, return_step_;   ///< of held_
   double held_ = 1;                  ///< share of its force that the hand gets; below 1 once it has let go
-  PortForce wanted_, let_go_;        ///< in the last step; what it lost as the jaws let go
-  double sliding_ = 0, slide_step_;  ///< share of it that has not yet slid out
+  PortForce wanted_;                 ///< in the last step
+  double sliding_ = 0, slide_step_;  ///< share of the time that what jaws let go takes to slide out, which is left
   bool lets_go_ = false;             ///< in this step
   bool resumed_ = false;
   Port port_;

@@ -71,17 +71,22 @@ void TwoNodes::settle() {
 void TwoNodes::tick() {
   world_->tick();
   models_->refresh();
+  std::vector<LocalContactModel>& told = under_way_.emplace_back();
   for (int t = 0; t < world_->tools(); ++t)
-    if (world_->tool(t).follows()) tell_haptic(t);
+    if (world_->tool(t).follows()) told.push_back(describe(t));
+  if (under_way_.size() <= delay_) return;
+  // What is told of another haptic node's steps is none of this one's.
+  for (const LocalContactModel& model : under_way_.front())
+    if (haptic_ && model.tool_run == haptic_run_ && model.tool_step < haptic_->steps()) haptic_->consume(model);
+  under_way_.pop_front();
 }
 
-void TwoNodes::tell_haptic(int tool) {
+const LocalContactModel& TwoNodes::describe(int tool) {
   LocalContactModel& model = model_[tool];
   models_->describe(tool, model);
   model.run = tissue_run_;
   ++model.seq;
-  // What is told of another haptic node's steps is none of this one's.
-  if (haptic_ && model.tool_run == haptic_run_ && model.tool_step < haptic_->steps()) haptic_->consume(model);
+  return model;
 }
 
 Eigen::Vector3d TwoNodes::force(int tool) const {

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <span>
 #include <vector>
@@ -32,6 +33,9 @@ class TwoNodes {
   /// Another haptic node, whose tools are where they are.
   void restart_haptic(std::span<const ToolDofs> dofs);
 
+  /// What the tissue tells arrives so many ticks late.
+  void delay(int ticks) { delay_ = static_cast<std::size_t>(ticks); }
+
   bool has_haptic() const { return haptic_ != nullptr; }
   HapticStep& haptic() { return *haptic_; }
   /// [N] on a tool, as its hand gets it: none without a haptic node.
@@ -46,7 +50,7 @@ class TwoNodes {
   void tell_tissue(std::span<const ToolDofs> dofs);
   void settle();
   void tick();
-  void tell_haptic(int tool);
+  const LocalContactModel& describe(int tool);
 
   Scene scene_;
   std::vector<Archive> archives_;
@@ -54,6 +58,8 @@ class TwoNodes {
   std::unique_ptr<DynamicWorld> world_;
   std::unique_ptr<LocalModels> models_;
   std::vector<LocalContactModel> model_;  ///< the newest, per tool
+  std::deque<std::vector<LocalContactModel>> under_way_;  ///< a tick each
+  std::size_t delay_ = 0;
   std::uint64_t haptic_run_ = 0, tissue_run_ = 0;
   Phase phase_ = Phase::gone;
 };
