@@ -69,7 +69,7 @@ TEST_F(McapExport, OfNothingIsRefused) {
   testing::expect_refusal(
       palpate() + " export " + log().string() + " --mcap --topic nonsense -o " + file("n.mcap").string(),
       {"there is no topic"});
-  testing::expect_refusal(palpate() + " export " + log().string() + " --mcap --topic top -o /nowhere/n.mcap",
+  testing::expect_refusal(palpate() + " export " + log().string() + " --mcap --topic top -o " + file("n.mcap").string(),
                           {"there is no topic"});
   testing::expect_refusal(palpate() + " export " + log().string() + " --mcap -o /nowhere/n.mcap",
                           {"/nowhere/n.mcap", "cannot be written"});
