@@ -75,6 +75,14 @@ TEST_F(McapExport, OfNothingIsRefused) {
                           {"/nowhere/n.mcap", "cannot be written"});
 }
 
+TEST_F(McapExport, SaysWhyItCannotBeWritten) {
+  const auto full = testing::run_program("trap \"\" XFSZ; ulimit -f 4; " + palpate() + " export " + log().string() +
+                                         " --mcap -o " + file("full.mcap").string());
+  EXPECT_EQ(full.status, 1);
+  EXPECT_NE(full.err.find("full.mcap: cannot be written: File too large"), std::string::npos) << full.err;
+  EXPECT_FALSE(std::filesystem::exists(file("full.mcap")));
+}
+
 // With the reference reader and the decoder of another project, where they are installed: scripts/nightly.sh mcap.
 class McapInTheReferenceReader : public McapExport {
  protected:
