@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/cli/progress.hpp"
+#include "common/realtime/shutdown.hpp"
 #include "common/scene/scene_changes.hpp"
 #include "tools/shared/set_option.hpp"
 #include "tools/study/commands.hpp"
@@ -78,6 +79,7 @@ std::vector<Scene> load_scenes(const std::vector<std::string>& files, const std:
 }
 
 void run(const Arguments& arguments) {
+  catch_shutdown_signals();
   study::StudyOptions options{.quick = arguments.quick, .budget_text = arguments.budget, .say = tell};
   if (!arguments.budget.empty()) options.budget = seconds_of(arguments.budget);
   const std::filesystem::path out = arguments.out;

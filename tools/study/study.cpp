@@ -6,6 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "common/realtime/shutdown.hpp"
 #include "tools/study/budget.hpp"
 #include "tools/study/kinds.hpp"
 #include "tools/study/machine.hpp"
@@ -81,6 +82,10 @@ Result run_study(const Scene& scene, const std::filesystem::path& folder, const 
   Result result;
   bool described = false;
   for (std::size_t i = 0; i < all.size(); ++i) {
+    if (shutdown_requested())
+      throw Interrupted(
+          fmt::format("stopped after {} of {} points, which stay in {}: the same command goes on from there", i,
+                      all.size(), folder.string()));
     const auto& [method, point] = all[i];
     const auto begin = std::chrono::steady_clock::now();
     const auto found = store.find(point);
