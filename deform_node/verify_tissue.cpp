@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "common/bus/log_reader.hpp"
+#include "common/realtime/shutdown.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/sim/dynamic_world.hpp"
 #include "idl/topics.hpp"
@@ -63,6 +64,7 @@ class TissueVerifier {
     std::uint64_t tick = keyframe.tick;
     const std::uint64_t last = run.steps.empty() ? 0 : run.steps.rbegin()->first;
     for (; tick <= last; ++tick) {
+      stop_if_interrupted();
       const auto step = run.steps.find(tick);
       const std::string lack = step == run.steps.end() ? "what it came to" : lack_of(world, step->second);
       if (!lack.empty()) {

@@ -13,6 +13,7 @@
 #include "common/bus/log_reader.hpp"
 #include "common/kernels/code_path.hpp"
 #include "common/kernels/kernels.hpp"
+#include "common/realtime/shutdown.hpp"
 #include "common/scene/find_archive.hpp"
 #include "common/scene/scene.hpp"
 #include "common/sim/haptic_step.hpp"
@@ -59,6 +60,7 @@ Recorded read_log(LogReader& log) {
   LocalContactModel model;
   TaskRecord task;
   while (log.next(event)) {
+    stop_if_interrupted();
     if (event.read(topics::tool_state, tool)) {
       RecordedStep& step = runs[tool.run].steps[tool.step];
       step.dofs[tool.tool] = dofs_of(tool);
@@ -138,6 +140,7 @@ class RunVerifier {
     std::uint64_t step = keyframe.step;
     const std::uint64_t last = run.steps.empty() ? step : run.steps.rbegin()->first;
     for (; step <= last && report_.mismatch.empty(); ++step) {
+      stop_if_interrupted();
       const auto recorded = run.steps.find(step);
       const bool whole =
           recorded != run.steps.end() && static_cast<int>(recorded->second.dofs.size()) == haptic.tools();
@@ -251,6 +254,7 @@ VerifyReport verify_log(const std::filesystem::path& file, const Scene& scene) {
   const auto& runs = recorded.runs;
   VerifyReport report;
   report.damage = log.damage_text();
+  report.footer = log.footer();
   for (const LogDamage& d : log.damage())
     if (!d.tail) report.gaps.push_back(fmt::format("{} bytes at byte {} are damaged", d.bytes, d.offset));
   for (const auto& [id, run] : runs)

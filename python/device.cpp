@@ -1,5 +1,6 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -17,7 +18,28 @@
 namespace py = pybind11;
 
 namespace palpate::python {
-namespace {
+
+/// The bus has threads, of which a forked process has none: it would wait for them for ever.
+inline pid_t& process_of_the_bus() {
+  static pid_t process = 0;  // none yet
+  return process;
+}
+inline bool is_forked() {
+  return process_of_the_bus() != 0 && process_of_the_bus() != getpid();
+}
+inline void refuse_forked() {
+  if (is_forked())
+    throw std::runtime_error(
+        "palpate.Device: this process was forked from one with a device, whose threads it lacks: begin it with "
+        "multiprocessing's 'spawn', or make devices only behind the fork");
+}
+
+/// A bus for this process.
+inline std::unique_ptr<Bus> make_bus(const BusSettings& settings) {
+  refuse_forked();
+  process_of_the_bus() = getpid();
+  return make_dds_bus(settings);
+}
 
 constexpr double kLongestWait = 1e9;             // [s]
 constexpr std::int64_t kSignalNs = 100'000'000;  // between two looks for signals
@@ -27,12 +49,22 @@ class Device {
  public:
   Device(std::uint32_t tool, int domain, const std::string& interface, const std::vector<std::string>& peers,
          const std::string& keys, const MotorLimits& limits)
-      : bus_(make_dds_bus({.domain = domain, .interface = interface, .peers = peers, .keys = keys, .role = "driver"})),
+      : bus_(make_bus({.domain = domain, .interface = interface, .peers = peers, .keys = keys, .role = "driver"})),
         writer_(bus_->writer(topics::device_state)),
         reader_(bus_->reader(topics::force_state, Keep::all)),
         follower_(tool, limits) {
     state_.tool = tool;
   }
+
+  /// What a forked process has of it is let lie.
+  ~Device() {
+    if (!is_forked()) return;
+    static_cast<void>(reader_.release());
+    static_cast<void>(writer_.release());
+    static_cast<void>(bus_.release());
+  }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
 
   /// False if it was not sent.
   bool write(const std::array<double, 6>& dofs, std::optional<std::int64_t> sense_ns) {
@@ -89,12 +121,25 @@ class Device {
   std::uint64_t written_ = 0;
 };
 
-}  // namespace
 }  // namespace palpate::python
+
+/// Python makes objects without their __init__ too, and forks.
+template <>
+class pybind11::detail::type_caster<palpate::python::Device> : public type_caster_base<palpate::python::Device> {
+ public:
+  bool load(handle source, bool convert) {
+    if (isinstance<palpate::python::Device>(source) &&
+        !reinterpret_cast<instance*>(source.ptr())->get_value_and_holder().holder_constructed())
+      throw type_error("palpate.Device.__init__() was not called");
+    palpate::python::refuse_forked();
+    return type_caster_base<palpate::python::Device>::load(source, convert);
+  }
+};
 
 PYBIND11_MODULE(_device, module) {
   using namespace palpate;
   using palpate::python::Device;
+  module.attr("__version__") = PALPATE_VERSION;
   module.doc() = "drivers of devices: a tool's motion on the bus, and the force back";
   py::class_<ForceState>(module, "ForceState")
       .def_readonly("step", &ForceState::step, "haptic step number")

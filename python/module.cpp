@@ -63,7 +63,6 @@ PYBIND11_MODULE(_core, module) {
   using namespace palpate;
   using namespace palpate::python;
   module.doc() = "palpate's simulator, in lock step, and its logs";
-  module.attr("__version__") = PALPATE_VERSION;
   py::class_<Scene>(module, "Scene")
       .def(py::init(
                [](const std::filesystem::path& file, const Changes& set) { return load_scene(file, changes_of(set)); }),

@@ -216,6 +216,10 @@ void add_check_command(cli::Command& app) {
                     "palpate check scenes/meshes/liver.msh"});
   command.does([arguments] {
     CheckOutput out(arguments->json);
+    if (names_image(arguments->scene))
+      throw std::runtime_error(
+          arguments->scene +
+          " is an image: `palpate organ` makes a mesh of a labelled one, and `palpate segment` labels one");
     if (names_mesh(arguments->scene) && !arguments->set.empty())
       throw std::runtime_error("--set is for a scene, and " + arguments->scene + " is a mesh");
     if (names_mesh(arguments->scene))

@@ -7,6 +7,7 @@
 
 #include "common/bus/log_reader.hpp"
 #include "common/bus/print.hpp"
+#include "common/bus/runs_at_once.hpp"
 #include "common/bus/topic_named.hpp"
 #include "common/files/atomic_file.hpp"
 #include "common/files/ending.hpp"
@@ -30,41 +31,52 @@ class Output {
     if (file.empty()) return;
     whole_.emplace(file);
     file_ = std::fopen(whole_->handle().c_str(), "w");
-    if (!file_) throw std::runtime_error(fmt::format("{}: cannot write", file));
+    require(file_);
   }
   ~Output() {
     if (file_ != stdout) std::fclose(file_);
   }
   Output(const Output&) = delete;
   void line(const std::string& text) {
-    std::fwrite(text.data(), 1, text.size(), file_);
-    std::fputc('\n', file_);
+    require(std::fwrite(text.data(), 1, text.size(), file_) == text.size() && std::fputc('\n', file_) != EOF);
   }
   void finish() {
-    if (std::fflush(file_) != 0 || std::ferror(file_))
-      throw std::runtime_error(fmt::format("{}: cannot write", name_.empty() ? "standard output" : name_));
+    require(std::fflush(file_) == 0);
     if (whole_) whole_->commit();
   }
 
  private:
+  void require(bool good) const {
+    if (good) return;
+    throw std::runtime_error(
+        fmt::format("{}: cannot be written: {}", name_.empty() ? "standard output" : name_, std::strerror(errno)));
+  }
+
   std::string name_;
   std::optional<AtomicFile> whole_;
   std::FILE* file_ = stdout;
 };
+
+void say_two_runs(const ExportOptions& o, const RunsAtOnce& runs) {
+  if (const std::string two = runs.text(); !two.empty()) fmt::print(stderr, "palpate: {}: {}\n", o.log, two);
+}
 
 template <class M>
 std::uint64_t export_topic(const ExportOptions& o, const Topic<M>& topic, LogReader& reader, Output& out) {
   if (!o.json) out.line("receive_ns," + csv_header<M>());
   std::uint64_t count = 0;
   LogEvent event;
+  RunsAtOnce runs;
   M message;
   while (reader.next(event)) {
     stop_if_interrupted();
+    runs.add(event);
     if (!event.read(topic, message)) continue;
     out.line(o.json ? fmt::format("{{\"receive_ns\":{},\"message\":{}}}", event.receive_ns, to_json(message))
                     : fmt::format("{},{}", event.receive_ns, csv_row(message)));
     ++count;
   }
+  say_two_runs(o, runs);
   return count;
 }
 

@@ -23,6 +23,7 @@ Json json_of(const TopicSummary& t) {
           {"missing", t.missing},
           {"repeated", t.repeated},
           {"invalid", t.invalid},
+          {"ahead", t.ahead},
           {"sense_to_publish_us", json_of(t.to_publish)},
           {"sense_to_receive_us", json_of(t.to_receive)}};
 }
@@ -42,6 +43,7 @@ Json json_of(const LogSummary& s, const std::string& file) {
             {"loss_reason", s.footer ? s.footer->error : ""},
             {"thinned_steps", s.thinned_steps},
             {"untold_steps", s.untold_steps},
+            {"runs_at_once", s.runs_at_once},
             {"unknown_events", s.unknown}};
   json["damage"] = Json::array();
   for (const LogDamage& d : s.damage)
@@ -75,6 +77,10 @@ void print_table(const LogSummary& s) {
     }
     fmt::print("\n");
   }
+  for (const auto& [name, t] : s.topics)
+    if (t.ahead > 0)
+      fmt::print("{}: {} of {} say that they were sensed after they were received, and count as 0 us: {}\n", name,
+                 t.ahead, t.samples, "their clock is not the recorder's");
 }
 
 void print_hops(const LogSummary& s) {
@@ -88,6 +94,7 @@ void print_hops(const LogSummary& s) {
   print("tool to force", s.hops.force());
   print("tool to surface", s.hops.surface());
   print("tool to picture", s.hops.picture());
+  fmt::print("{}", ahead_text(s.hops));
   if (s.hops.uncertainty_ns() > 0)
     fmt::print("the nodes' clocks are known to {:.1f} us\n", 1e-3 * static_cast<double>(s.hops.uncertainty_ns()));
 }
@@ -125,6 +132,7 @@ void print_text(const LogSummary& s, const std::string& file) {
     fmt::print("lacks {} steps that its haptic node told nobody of: its publishing thread had no processor\n",
                s.untold_steps);
   if (s.unknown > 0) fmt::print("{} events of unknown topics\n", s.unknown);
+  if (!s.runs_at_once.empty()) fmt::print("{}\n", s.runs_at_once);
   print_table(s);
   print_hops(s);
   fmt::print("{}", text_of(s.hops.tissue()));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "common/bus/runs_at_once.hpp"
 #include "common/bus/sequence.hpp"
 #include "common/bus/thinning.hpp"
 #include "idl/topics.hpp"
@@ -16,6 +17,7 @@ class Summariser {
   explicit Summariser(LogSummary& summary) : summary_(summary) {}
 
   void add(const LogEvent& event) {
+    runs_.add(event);
     bool known = false;
     topics::for_each([&](const auto& topic) {
       if (event.channel != topic.name) return;
@@ -26,6 +28,7 @@ class Summariser {
   }
 
   void finish() {
+    summary_.runs_at_once = runs_.text();
     for (auto& [name, topic] : summary_.topics) {
       const SequenceCheck& check = sequences_[name];
       topic.streams = check.streams();
@@ -51,6 +54,7 @@ class Summariser {
     // What a topic keeps for late joiners is old when it comes; that is no latency.
     if (const std::int64_t sense = sense_of(message); sense > 0 && !topic.qos.transient_local) {
       t.to_receive.record(event.receive_ns - sense);
+      t.ahead += sense > event.receive_ns;
       if constexpr (requires { message.publish_ns; }) t.to_publish.record(message.publish_ns - sense);
     }
     learn(message);
@@ -89,6 +93,7 @@ class Summariser {
   }
 
   LogSummary& summary_;
+  RunsAtOnce runs_;
   std::map<std::uint64_t, ToolState> last_;  ///< of each run's first tool
   std::map<std::string, SequenceCheck> sequences_;
   std::set<std::string> may_be_thin_;  ///< topics of which a log may leave out messages

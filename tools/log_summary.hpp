@@ -19,6 +19,7 @@ struct TopicSummary {
   std::uint64_t repeated = 0;              ///< sequence numbers that came again or late
   std::uint64_t invalid = 0;               ///< events that do not decode to a valid message
   std::int64_t first_ns = 0, last_ns = 0;  ///< receive times
+  std::uint64_t ahead = 0;                 ///< whose sense lies after their reception: they count as 0 below
   Histogram to_publish;                    ///< [ns] sense to publication, for messages that carry both
   Histogram to_receive;  ///< [ns] sense to reception by the recorder; honest on the recorder's host alone
   double rate_hz() const;
@@ -33,6 +34,7 @@ struct LogSummary {
   std::uint64_t bytes = 0;
   std::uint64_t thinned_steps = 0;             ///< see LogReader::thinned_steps()
   std::uint64_t untold_steps = 0;              ///< of the haptic node, which never came to the bus
+  std::string runs_at_once;                    ///< see RunsAtOnce; empty: there are none
   std::uint64_t unknown = 0;                   ///< events of topics that this program does not know
   std::map<std::string, TopicSummary> topics;  ///< those with samples
   HopTimes hops;

@@ -37,28 +37,38 @@ std::string default_file() {
   return name;
 }
 
-std::uint64_t samples_of(const RecorderReport& report) {
-  std::uint64_t sum = 0;
-  for (const auto& [name, topic] : report.topics) sum += topic.samples;
+RecordedTopic sum_of(const RecorderReport& report) {
+  RecordedTopic sum;
+  for (const auto& [name, topic] : report.topics) {
+    sum.samples += topic.samples;
+    sum.kept += topic.kept;
+  }
   return sum;
 }
 
 nlohmann::ordered_json summary(const RecordOptions& o, const RecorderReport& report, double seconds) {
   nlohmann::ordered_json topics = nlohmann::ordered_json::object();
   for (const auto& [name, topic] : report.topics)
-    topics[name] = {{"samples", topic.samples}, {"missing", topic.missing}, {"invalid", topic.invalid}};
-  return {{"node", "recorder"},          {"file", o.file},
-          {"seconds", seconds},          {"messages", samples_of(report)},
-          {"missing", report.missing()}, {"lost", report.log.lost},
-          {"bytes", report.log.bytes},   {"error", report.log.error},
-          {"scene", report.has_scene},   {"topics", topics}};
+    topics[name] = {
+        {"samples", topic.samples}, {"kept", topic.kept}, {"missing", topic.missing}, {"invalid", topic.invalid}};
+  const RecordedTopic sum = sum_of(report);
+  return {{"node", "recorder"},        {"file", o.file},
+          {"seconds", seconds},        {"messages", sum.samples},
+          {"kept", sum.kept},          {"missing", report.missing()},
+          {"lost", report.log.lost},   {"bytes", report.log.bytes},
+          {"error", report.log.error}, {"scene", report.has_scene},
+          {"topics", topics}};
 }
 
 void print_report(const RecordOptions& o, const RecorderReport& report, double seconds) {
-  fmt::print("{}: {:.1f} s, {} messages, {:.1f} MB\n", o.file, seconds, samples_of(report),
+  const auto kept = [](const RecordedTopic& topic) {
+    return topic.kept < topic.samples ? fmt::format(", {} of them kept", topic.kept) : std::string();
+  };
+  const RecordedTopic sum = sum_of(report);
+  fmt::print("{}: {:.1f} s, {} messages{}, {:.1f} MB\n", o.file, seconds, sum.samples, kept(sum),
              1e-6 * static_cast<double>(report.log.bytes));
   for (const auto& [name, topic] : report.topics) {
-    fmt::print("  {:24} {:9}", name, topic.samples);
+    fmt::print("  {:24} {:9}{}", name, topic.samples, kept(topic));
     if (topic.missing > 0) fmt::print("  {} never arrived", topic.missing);
     if (topic.invalid > 0) fmt::print("  {} invalid", topic.invalid);
     fmt::print("\n");
@@ -105,9 +115,10 @@ void record(RecordOptions& o) {
   const RecorderReport report = recorder.finish();
   if (o.supervised || o.json) {
     fmt::print("{}\n", summary(o, report, elapsed()).dump());
-  } else {
+  } else if (report.has_log) {
     print_report(o, report, elapsed());
   }
+  if (!report.has_log) throw std::runtime_error(o.file + ": nothing was there to record; it is left as it was");
   if (report.log.lost > 0) throw std::runtime_error(fmt::format("{}: {}", o.file, loss_text(report.log)));
 }
 

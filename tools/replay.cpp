@@ -4,7 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "common/bus/log_reader.hpp"
+#include "common/bus/runs_at_once.hpp"
+#include "common/bus/topic_named.hpp"
 #include "common/cli/progress.hpp"
+#include "common/describe/printable.hpp"
 #include "common/realtime/settings.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/find_archive.hpp"
@@ -29,7 +32,9 @@ struct ReplayOptions {
 
 constexpr int kPlayerPriority = 30;  // below a node's loop and its publisher
 
-nlohmann::ordered_json json_of(const std::string& file, const VerifyReport& report, const TissueReport& tissue) {
+nlohmann::ordered_json json_of(const std::string& file, const VerifyReport& report, const TissueReport& tissue,
+                               const std::string& two_runs) {
+  using Json = nlohmann::ordered_json;
   std::vector<std::string> gaps = report.gaps;
   gaps.insert(gaps.end(), tissue.gaps.begin(), tissue.gaps.end());
   return {{"file", file},
@@ -43,6 +48,9 @@ nlohmann::ordered_json json_of(const std::string& file, const VerifyReport& repo
           {"complete", report.damage.empty()},
           {"mismatch", report.mismatch.empty() ? tissue.mismatch : report.mismatch},
           {"gaps", gaps},
+          {"lost", report.footer ? Json(report.footer->lost) : Json(nullptr)},
+          {"loss_reason", report.footer ? report.footer->error : ""},
+          {"runs_at_once", two_runs},
           {"damage", report.damage}};
 }
 
@@ -79,15 +87,21 @@ void require_tissue(const std::string& file, const TissueReport& tissue, const s
 }
 
 void verify(const ReplayOptions& o) {
+  catch_shutdown_signals();
   const LoggedScene logged(o.file, o.data);
   const std::vector<std::string> computed = logged.ensure_archives();
   const VerifyReport report = verify_log(o.file, logged.scene());
   if (!report.damage.empty()) fmt::print(stderr, "palpate: {}\n", report.damage);
+  if (report.footer && report.footer->lost > 0)
+    fmt::print(stderr, "palpate: {}: the recorder lost {} messages: {}\n", o.file, report.footer->lost,
+               printable(report.footer->error));
+  const std::string two_runs = runs_at_once(o.file);
+  if (!two_runs.empty()) fmt::print(stderr, "palpate: {}: {}; each is verified by itself\n", o.file, two_runs);
   for (const std::string& gap : report.gaps) fmt::print(stderr, "palpate: {}: {}\n", o.file, gap);
   TissueReport tissue;
   if (report.verified()) tissue = verify_tissue(o.file, logged.scene());  // on the code path that verify_log() took up
   for (const std::string& gap : tissue.gaps) fmt::print(stderr, "palpate: {}: {}\n", o.file, gap);
-  if (o.json) fmt::print("{}\n", json_of(o.file, report, tissue).dump());
+  if (o.json) fmt::print("{}\n", json_of(o.file, report, tissue, two_runs).dump());
   const bool differs = !report.mismatch.empty() || !tissue.mismatch.empty();
   const std::string doubts = differs ? doubt(logged.scene(), computed) : std::string();
   require_forces(o.file, report, doubts);
@@ -134,10 +148,14 @@ void say_another_scene(const ReplayOptions& o) {
 
 void play(const ReplayOptions& o) {
   catch_shutdown_signals();
+  const std::set<std::string> topics = topics_in(o.file, o.play.topics);
+  for (const std::string& wanted : o.play.topics)
+    if (const std::string name = topic_named(wanted); !topics.contains(name))
+      throw std::runtime_error(fmt::format("{}: holds no sample of {}", o.file, name));
   say_another_scene(o);
   const auto bus = make_dds_bus(o.network);
   if (o.network.keys.empty())  // with keys a player hears nobody
-    look_who_is_there(*bus, topics_in(o.file, o.play.topics));
+    look_who_is_there(*bus, topics);
   request_realtime(
       {.priority = kPlayerPriority, .lock_memory = false});  // where permitted; after the bus has made its threads
   const PlayReport report = play_log(o.file, *bus, o.play, [&](double seconds) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <lcm/eventlog.h>
 #include <stdio_ext.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "common/files/atomic_file.hpp"
 #include "common/realtime/clock.hpp"
@@ -35,6 +37,35 @@ std::string reason_for(int error) {
   return error != 0 ? std::strerror(error) : "write failed";
 }
 
+/// A file or folder that nobody else has at the same time; of what cannot be opened, nothing.
+class Lock {
+ public:
+  Lock() = default;
+  /// Waits for it, or throws std::runtime_error if another one has it.
+  static Lock waiting(const std::filesystem::path& path) { return Lock(path, LOCK_EX); }
+  static Lock at_once(const std::filesystem::path& path) { return Lock(path, LOCK_EX | LOCK_NB); }
+  Lock(Lock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  Lock& operator=(Lock&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    return *this;
+  }
+  ~Lock() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+
+ private:
+  Lock(const std::filesystem::path& path, int how) : descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor_ < 0 || flock(descriptor_, how) == 0 || errno != EWOULDBLOCK) return;
+    close(descriptor_);
+    throw std::runtime_error(path.string() + ": another program is writing it: give another name");
+  }
+  int descriptor_ = -1;
+};
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
 struct Event {
   std::string channel;
   std::int64_t receive_ns;
@@ -50,14 +81,17 @@ class LogWriter::Impl {
         enough_(std::min(queue_bytes / 2, kFlushBytes)),
         when_full_(when_full),
         wall_offset_(wall_ns() - now_ns()) {
-    const bool named_later = header && (!std::filesystem::exists(file) || std::filesystem::is_regular_file(file));
-    std::optional<AtomicFile> whole;
-    if (named_later) whole.emplace(file);
-    log_ = lcm_eventlog_create(whole ? whole->handle().c_str() : file.c_str(), "w");
+    Lock beginning;
+    if (header && (!std::filesystem::exists(file) || std::filesystem::is_regular_file(file))) {
+      beginning = Lock::waiting(folder_of(file));  // of two that begin at once, the second finds the first
+      if (std::filesystem::exists(file)) former_ = Lock::at_once(file);
+      unnamed_.emplace(file);
+    }
+    log_ = lcm_eventlog_create(unnamed_ ? unnamed_->handle().c_str() : file.c_str(), "w");
     if (!log_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+    if (unnamed_) flock(fileno(log_->f), LOCK_EX);
     std::setvbuf(log_->f, nullptr, _IOFBF, kFlushBytes);
-    if (header) begin(*header);
-    if (whole) give_name(*whole, file);
+    if (header) begin(*header, file);
     thread_ = std::thread([this] { run(); });
   }
 
@@ -95,28 +129,34 @@ class LogWriter::Impl {
     log_ = nullptr;
   }
 
+  bool has_name() const { return !unnamed_; }
+
+  void give_name() {
+    if (!unnamed_) return;
+    unnamed_->commit();
+    unnamed_.reset();
+    former_ = {};
+  }
+
   LogStatus status() const {
     const std::lock_guard lock(mutex_);
     return status_;
   }
 
  private:
-  /// Once the header is on its way to the disk.
-  void give_name(AtomicFile& whole, const std::filesystem::path& file) try {
-    if (status_.lost > 0)
-      throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), status_.error));
-    whole.commit();
-  } catch (...) {
-    lcm_eventlog_destroy(log_);
-    throw;
-  }
-
-  void begin(const LogHeader& header) {
+  void begin(const LogHeader& header, const std::filesystem::path& file) try {
     Bytes payload;
     encode(header, payload);
     append({kHeaderChannel, header.start_monotonic_ns,
             envelope::wrap(kHeaderChannel, header.start_monotonic_ns, payload)});
     flush();
+    if (unnamed_ && status_.lost > 0)
+      throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), status_.error));
+    std::error_code error;
+    if (std::filesystem::file_size(file, error) == 0 || error) give_name();
+  } catch (...) {
+    lcm_eventlog_destroy(log_);
+    throw;
   }
 
   void run() {
@@ -213,6 +253,8 @@ class LogWriter::Impl {
     status_.error = why;
   }
 
+  Lock former_;                        ///< the file of that name, which stays until this one has it
+  std::optional<AtomicFile> unnamed_;  ///< until it has its name
   lcm_eventlog_t* log_ = nullptr;
   std::size_t queue_limit_, enough_;  ///< [bytes] that may wait, and at which the thread is woken
   WhenFull when_full_;
@@ -248,6 +290,14 @@ LogStatus LogWriter::finish() {
   impl_->want_footer();
   impl_->close();
   return status();
+}
+
+bool LogWriter::has_name() const {
+  return impl_->has_name();
+}
+
+void LogWriter::give_name() {
+  impl_->give_name();
 }
 
 LogStatus LogWriter::status() const {

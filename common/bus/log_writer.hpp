@@ -29,6 +29,7 @@ class LogWriter {
   /// Creates the file. Throws std::runtime_error if that fails.
   explicit LogWriter(const std::filesystem::path& file, std::size_t queue_bytes = kQueueLimit);
   /// The same with the header in it before the file has its name: at no moment is there a file that cannot be read.
+  /// Where one of that name holds something, it stays as it is until give_name(). Throws also if another writer has it.
   LogWriter(const std::filesystem::path& file, const LogHeader& header, WhenFull when_full = WhenFull::lose);
   ~LogWriter();  ///< finish() without a footer if it was not called
 
@@ -41,6 +42,10 @@ class LogWriter {
     encode(message, payload);
     write_payload(channel, receive_ns, payload);
   }
+
+  /// Takes the place of a file that held something. Throws std::runtime_error if that fails.
+  void give_name();
+  bool has_name() const;  ///< without it nothing stays of the log
 
   /// Writes the footer and what is queued, and closes the file.
   LogStatus finish();

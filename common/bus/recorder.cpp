@@ -23,8 +23,12 @@ struct Track {
   Topic<M> topic;
   std::unique_ptr<Reader<M>> reader;
   SequenceCheck sequence{};
-  std::uint64_t samples = 0;
+  std::uint64_t samples = 0, kept = 0;
 };
+
+/// Programs say who is there and what the time is whether or not a system runs.
+template <class M>
+constexpr bool kOfARun = !std::same_as<M, NodeStatus> && !std::same_as<M, ClockProbe> && !std::same_as<M, ClockAnswer>;
 
 template <class... M>
 auto make_tracks(Bus& bus, const std::tuple<Topic<M>...>& all) {
@@ -77,10 +81,12 @@ class Recorder::Impl {
     RecorderReport report;
     report.log = log_.status();
     report.has_scene = !status_.scene_hash.empty();
+    report.has_log = log_.has_name();
     std::apply(
         [&](const auto&... track) {
           const auto add = [&](const auto& t) {
-            if (t.samples > 0) report.topics[t.topic.name] = {t.samples, t.sequence.missing(), t.reader->invalid()};
+            if (t.samples > 0)
+              report.topics[t.topic.name] = {t.samples, t.kept, t.sequence.missing(), t.reader->invalid()};
           };
           (add(track), ...);
         },
@@ -112,7 +118,11 @@ class Recorder::Impl {
       track.sequence.add(*message);
       ++track.samples;
       if constexpr (std::same_as<M, SceneText>) status_.scene_hash = message->scene_hash;
-      if (thinning_.keeps(*message)) log_.write(track.topic.name, receive_ns, *message);
+      if constexpr (kOfARun<M>) log_.give_name();
+      if (thinning_.keeps(*message)) {
+        log_.write(track.topic.name, receive_ns, *message);
+        ++track.kept;
+      }
       if constexpr (std::same_as<M, SceneText>) learn_scene(message->text, receive_ns);
     }
   }

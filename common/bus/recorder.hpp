@@ -23,7 +23,8 @@ struct RecorderSettings {
 };
 
 struct RecordedTopic {
-  std::uint64_t samples = 0;
+  std::uint64_t samples = 0;  ///< received
+  std::uint64_t kept = 0;     ///< of these, in the log
   std::uint64_t missing = 0;  ///< by sequence numbers: sent, but not received
   std::uint64_t invalid = 0;
 };
@@ -32,6 +33,7 @@ struct RecorderReport {
   std::map<std::string, RecordedTopic> topics;  ///< by name, those with samples
   LogStatus log;
   bool has_scene = false;
+  bool has_log = false;  ///< nothing takes the place of a log that was there until there is something to record
   std::uint64_t missing() const;
 };
 

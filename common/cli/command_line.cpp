@@ -104,6 +104,20 @@ void keep_inputs(const CLI::App& app) {
   }
 }
 
+/// What needs a folder that is not there is told before the work whose result it is.
+void ask_for_folders(const CLI::App& app) {
+  for (const CLI::Option* output : app.get_options()) {
+    if (output->get_type_name() != kOutput) continue;
+    for (const std::string& name : output->results()) {
+      if (name.empty()) continue;
+      const fs::path folder = fs::absolute(name).parent_path();
+      if (!fs::is_directory(folder))
+        throw std::runtime_error(
+            fmt::format("{}: it cannot be written, since the folder {} is not there", name, folder.string()));
+    }
+  }
+}
+
 }  // namespace
 
 Option& Option::required() {
@@ -227,6 +241,7 @@ void Command::does(const std::function<void()>& work) {
   app_->callback([app = app_, work] {
     keep_inputs(*app);
     keep_other_kinds(*app);
+    ask_for_folders(*app);
     work();
   });
 }
@@ -267,6 +282,7 @@ std::optional<int> CommandLine::read(int argc, char** argv) {
     app_->parse(std::move(words));
     keep_inputs(*app_);
     keep_other_kinds(*app_);
+    ask_for_folders(*app_);
   } catch (const CLI::ParseError& error) {
     const auto kind = static_cast<CLI::ExitCodes>(error.get_exit_code());
     const bool may_be_unknown = kind == CLI::ExitCodes::RequiredError || kind == CLI::ExitCodes::ExtrasError;

@@ -32,7 +32,8 @@ class Option {
   Option& needs(const Option& other);
   Option& hidden();
   /// It names a file that is written: refused where that is there and no regular file, is a link, is what another
-  /// option of the command names, or ends in another way than `ending` (".png") says; and, without the command's flag
+  /// option of the command names, lies in a folder that is not there, or ends in another way than `ending` (".png")
+  /// says; and, without the command's flag
   /// --force, which this adds, where it is of another kind (common/files/file_kind.hpp) than those that this option
   /// writes, `kinds` or that of `ending`. An empty file is of every kind.
   Option& output_file(const std::string& ending = "", const std::vector<std::string>& kinds = {});

@@ -11,8 +11,8 @@ namespace palpate {
 ///
 /// The mass is what a hand and its device have. A light one follows each change of the force, and tissue that answers
 /// some ticks late, as a node of its own does, feeds its swing: 20 g buzz at a grasp that is told 5 ms late, where
-/// these rest at 20 ms. A mass that is led into stiff tissue would press it by its momentum; what goes against the force
-/// is braked for that.
+/// these rest at 20 ms. A mass that is led into stiff tissue would press it by its momentum; what goes against the
+/// force is braked for that.
 class VirtualCoupling {
  public:
   static constexpr double kMass = 0.33, kDamping = 20, kStiffness = 300;  ///< [kg], [N s/m], [N/m]
@@ -24,8 +24,8 @@ class VirtualCoupling {
   /// free of it.
   static constexpr double kBrake = 1000;
 
-  /// Goes on for `dt` [s], in which the tool is led on by `led` [m], under the force [N] on the tool. How far the tip is
-  /// from where it is led [m], world.
+  /// Goes on for `dt` [s], in which the tool is led on by `led` [m], under the force [N] on the tool. How far the tip
+  /// is from where it is led [m], world.
   const Eigen::Vector3d& step(const Eigen::Vector3d& force, const Eigen::Vector3d& led, double dt) {
     const double way = tip_.at.norm(), reach = kStrength / kStiffness;
     const Eigen::Vector3d pulled_to = (1 - reach / std::max(way, reach)) * tip_.at;

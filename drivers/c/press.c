@@ -152,10 +152,25 @@ static void loop(dds_entity_t writer, dds_entity_t reader, uint32_t tool, double
   printf("not felt: %llu forces of another run, %llu out of range\n", motors.strange, motors.refused);
 }
 
+/* The whole argument at a place as a number, or what stands for it where there is none. */
+static double number(int argc, char** argv, int place, const char* name, double otherwise) {
+  if (argc <= place) return otherwise;
+  char* end = NULL;
+  const double value = strtod(argv[place], &end);
+  if (end == argv[place] || *end != '\0' || !(value >= 0 && value <= 1e9)) {
+    fprintf(stderr, "press: %s is a number from 0, and not '%s'\n", name, argv[place]);
+    exit(1);
+  }
+  return value;
+}
+
 int main(int argc, char** argv) {
-  const uint32_t tool = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 0;
-  const double from = argc > 2 ? strtod(argv[2], NULL) : 0.10;
-  const double to = argc > 3 ? strtod(argv[3], NULL) : 0.12;
+  if (argc > 4) {
+    fprintf(stderr, "press: too many arguments: press [TOOL [FROM TO]]\n");
+    return 1;
+  }
+  const uint32_t tool = (uint32_t)number(argc, argv, 1, "TOOL", 0);
+  const double from = number(argc, argv, 2, "FROM", 0.10), to = number(argc, argv, 3, "TO", 0.12);
   signal(SIGINT, stop);
   signal(SIGTERM, stop);
 

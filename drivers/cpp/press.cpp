@@ -4,11 +4,14 @@
 // trocar [m], between which the emulated hardware goes in and out. For hardware of your own, replace Hardware.
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <exception>
 #include <numbers>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "common/bus/dds_bus.hpp"
 #include "common/bus/force_follower.hpp"
@@ -82,13 +85,26 @@ void run(int domain, std::uint32_t tool, Hardware hardware) {
               static_cast<unsigned long long>(follower.strange()), static_cast<unsigned long long>(follower.refused()));
 }
 
+/// The whole argument at a place as a number, or what stands for it where there is none.
+template <class T>
+T number(int argc, char** argv, int place, const char* name, T otherwise) {
+  if (argc <= place) return otherwise;
+  const std::string_view text = argv[place];
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > T(1e9))
+    throw std::invalid_argument(std::string(name) + " is a number from 0, and not '" + argv[place] + "'");
+  return value;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    const auto number = [&](int place, double otherwise) { return argc > place ? std::stod(argv[place]) : otherwise; };
-    run(static_cast<int>(number(1, 0)), static_cast<std::uint32_t>(number(2, 0)),
-        Hardware(number(3, 0.10), number(4, 0.12)));
+    if (argc > 5) throw std::invalid_argument("too many arguments: press DOMAIN [TOOL [FROM TO]]");
+    const int domain = number(argc, argv, 1, "DOMAIN", 0), tool = number(argc, argv, 2, "TOOL", 0);
+    run(domain, static_cast<std::uint32_t>(tool),
+        Hardware(number(argc, argv, 3, "FROM", 0.10), number(argc, argv, 4, "TO", 0.12)));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "press: %s\n", error.what());
     return 1;

@@ -61,9 +61,24 @@ def let_go(device, motors):
         motors.drive(device.fade().force)
 
 
+def number(place, name, kind, otherwise):
+    """The argument at a place, or what stands for it where there is none."""
+    if len(sys.argv) <= place:
+        return otherwise
+    try:
+        value = kind(sys.argv[place])
+    except ValueError:
+        value = -1
+    if not 0 <= value <= 1e9:
+        sys.exit(f"press: {name} is a number from 0, and not '{sys.argv[place]}'")
+    return value
+
+
 def main():
-    domain, tool = (int(value) for value in (sys.argv[1:3] + ["0", "0"][len(sys.argv[1:3]):]))
-    shallow, deep = (float(value) for value in (sys.argv[3:5] or ("0.10", "0.12")))
+    if len(sys.argv) > 5:
+        sys.exit("press: too many arguments: press.py DOMAIN [TOOL [FROM TO]]")
+    domain, tool = number(1, "DOMAIN", int, 0), number(2, "TOOL", int, 0)
+    shallow, deep = number(3, "FROM", float, 0.10), number(4, "TO", float, 0.12)
     device, motors = palpate.Device(tool, domain=domain, **LIMITS), Motors()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:

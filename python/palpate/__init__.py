@@ -1,5 +1,6 @@
 """palpate, a haptic simulator of soft tissue: scenes, tensors, static states, runs in lock step, topic logs, drivers of devices."""
 import importlib
+import importlib.util
 import os
 import pathlib
 from typing import TYPE_CHECKING, Any
@@ -20,17 +21,20 @@ def _choose_blas() -> None:
 
 _choose_blas()
 
-from ._device import Device, ForceState  # noqa: E402
+from ._device import Device, ForceState, __version__  # noqa: E402
 
 if TYPE_CHECKING:
-    from ._core import Archive, Scene, Simulator, __version__, check, read_log, solve, topics_in
+    from ._core import Archive, Scene, Simulator, check, read_log, solve, topics_in
 
-__all__ = ["Archive", "Device", "ForceState", "Scene", "Simulator", "check", "read_log", "solve", "topics_in", "__version__"]
+_OF_THE_SIMULATOR = ["Archive", "Scene", "Simulator", "check", "read_log", "solve", "topics_in"]
+__all__ = ["Device", "ForceState", "__version__"]
+if importlib.util.find_spec("palpate._core"):
+    __all__ += _OF_THE_SIMULATOR
 
 
 def __getattr__(name: str) -> Any:
     """The simulator's libraries are loaded with the first of its names: a driver goes without them."""
-    if name not in __all__:
+    if name not in _OF_THE_SIMULATOR:
         raise AttributeError(f"module 'palpate' has no attribute '{name}'")
     try:
         core = importlib.import_module("palpate._core")

@@ -1,5 +1,7 @@
 from collections.abc import Sequence
 
+__version__: str
+
 class ForceState:
     step: int
     sense_ns: int

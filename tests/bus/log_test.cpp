@@ -17,6 +17,8 @@
 
 #include "common/bus/log_reader.hpp"
 #include "common/bus/log_writer.hpp"
+#include "common/bus/memory_bus.hpp"
+#include "common/bus/recorder.hpp"
 #include "common/bus/thinning.hpp"
 #include "common/realtime/clock.hpp"
 #include "idl/topics.hpp"
@@ -292,6 +294,49 @@ TEST_F(Log, HasItsNameOnlyOnceItsHeaderIsInIt) {
   EXPECT_THROW(LogWriter(file_, header()), std::runtime_error);
   setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_TRUE(fs::is_empty(folder_)) << "a header that does not fit leaves no file";
+}
+
+TEST_F(Log, ARecorderTakesThePlaceOfALogOnlyOnceThereIsSomethingToRecord) {
+  std::ofstream(file_) << "a long session";
+  const auto network = make_memory_network();
+  const auto bus = make_memory_bus(network), recorders = make_memory_bus(network);
+  const auto status = bus->writer(topics::node_status);
+  {
+    Recorder recorder(*recorders, {.file = file_, .version = "test"});
+    status->write({.node = "web 1@here", .role = "web", .seq = 1});
+    recorder.step(std::chrono::milliseconds(1));
+    const RecorderReport report = recorder.finish();
+    EXPECT_GT(report.topics.at("palpate/node_status").samples, 0u) << "who is there is no session";
+    EXPECT_FALSE(report.has_log);
+  }
+  EXPECT_EQ(fs::file_size(file_), 14u);
+  const auto tools = bus->writer(topics::tool_state);
+  Recorder recorder(*recorders, {.file = file_, .version = "test"});
+  tools->write(tool_sample(1));
+  recorder.step(std::chrono::milliseconds(1));
+  EXPECT_EQ(LogReader(file_).header().version, "test");
+  EXPECT_TRUE(recorder.finish().has_log);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Log, IsWrittenByOneAlone) {
+  const auto refusal = [&] {
+    try {
+      LogWriter(file_, header());
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  {
+    const LogWriter first(file_, header());
+    EXPECT_EQ(refusal(), file_.string() + ": another program is writing it: give another name");
+  }
+  LogWriter second(file_, header());
+  EXPECT_FALSE(second.has_name()) << "what is there stays";
+  EXPECT_NE(refusal(), "accepted") << "and waits for the second alone";
+  second.give_name();
+  EXPECT_NE(refusal(), "accepted");
 }
 
 TEST_F(Log, APipeIsNoLogAndIsNotWaitedFor) {

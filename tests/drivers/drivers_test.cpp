@@ -51,6 +51,19 @@ std::vector<std::string> python(const std::string& script) {
           std::to_string(own_domain())};
 }
 
+TEST(Drivers, SayWhichArgumentIsWrong) {
+  std::string said;
+  for (const char* language : {"c", "cpp"}) {
+    EXPECT_EQ(run_command(example_in(language) + " 12x", &said), 1);
+    EXPECT_NE(said.find(" is a number from 0, and not '12x'"), std::string::npos) << said;
+    EXPECT_EQ(run_command(example_in(language) + " 1 2 3 4 5", &said), 1);
+    EXPECT_NE(said.find("press: too many arguments"), std::string::npos) << said;
+  }
+  if (why_not_in_python()) return;
+  EXPECT_EQ(run_command(fmt::format("{} shallow", fmt::join(python("drivers/python/press.py"), " ")), &said), 1);
+  EXPECT_NE(said.find("press: TOOL is a number from 0, and not 'shallow'"), std::string::npos) << said;
+}
+
 TEST(Drivers, InPythonWithItsModule) {
   if (const char* why = why_not_in_python()) GTEST_SKIP() << why;
   DriverRig rig;

@@ -69,10 +69,18 @@ TEST_F(McapExport, OfNothingIsRefused) {
   testing::expect_refusal(
       palpate() + " export " + log().string() + " --mcap --topic nonsense -o " + file("n.mcap").string(),
       {"there is no topic"});
-  testing::expect_refusal(palpate() + " export " + log().string() + " --mcap --topic top -o /nowhere/n.mcap",
+  testing::expect_refusal(palpate() + " export " + log().string() + " --mcap --topic top -o " + file("n.mcap").string(),
                           {"there is no topic"});
   testing::expect_refusal(palpate() + " export " + log().string() + " --mcap -o /nowhere/n.mcap",
                           {"/nowhere/n.mcap", "cannot be written"});
+}
+
+TEST_F(McapExport, SaysWhyItCannotBeWritten) {
+  const auto full = testing::run_program("trap \"\" XFSZ; ulimit -f 4; " + palpate() + " export " + log().string() +
+                                         " --mcap -o " + file("full.mcap").string());
+  EXPECT_EQ(full.status, 1);
+  EXPECT_NE(full.err.find("full.mcap: cannot be written: File too large"), std::string::npos) << full.err;
+  EXPECT_FALSE(std::filesystem::exists(file("full.mcap")));
 }
 
 // With the reference reader and the decoder of another project, where they are installed: scripts/nightly.sh mcap.

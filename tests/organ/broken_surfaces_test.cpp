@@ -99,7 +99,7 @@ std::vector<Broken> broken_surfaces() {
   all.push_back({"metres.stl", stl(ball), "--nodes 300", {"warning: 100 m across: is --unit right?"}, 1e9 * kBall});
   TriangleMesh far = ball;
   far.nodes.emplace_back(1e8, 0, 0);
-  all.push_back({"far.obj", obj(far), mm, {"1 nodes that no triangle uses, the first at (1e+08, 0, 0) mm"}, kBall});
+  all.push_back({"far.obj", obj(far), mm, {"1 node that no triangle uses, the first at (1e+08, 0, 0) mm"}, kBall});
   all.push_back({"lying.stl",
                  binary_stl(ball, "solid ball", 7),
                  mm,

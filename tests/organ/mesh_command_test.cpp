@@ -118,8 +118,8 @@ TEST_F(MeshCommand, WhatIsFoundIsToldAndReportedBeforeARefusal) {
       mesh(fmt::format("{} --report {} -o {}", file.string(), report.string(), (folder_ / "a.msh").string()));
   EXPECT_EQ(refused.status, 1);
   EXPECT_NE(refused.err.find("half.stl: a hole of"), std::string::npos) << refused.err;
-  EXPECT_NE(refused.out.find("found: 1 triangles that are there twice"), std::string::npos) << refused.out;
-  for (const char* row : {"1 triangles that are there twice", "a hole of"})
+  EXPECT_NE(refused.out.find("found: 1 triangle that is there twice"), std::string::npos) << refused.out;
+  for (const char* row : {"1 triangle that is there twice", "a hole of"})
     EXPECT_NE(text_of(report).find(row), std::string::npos) << text_of(report);
 }
 
@@ -134,7 +134,7 @@ TEST_F(MeshCommand, FiguresArePrintedAsOneLineOfJson) {
   const auto json = nlohmann::json::parse(made.out);
   const TetMesh body = load_tet_mesh(folder_ / "a.msh", 1);
   EXPECT_EQ(json["triangles"], twice.triangles.size());
-  EXPECT_EQ(json["found"][0]["what"], "1 triangles that are there twice");
+  EXPECT_EQ(json["found"][0]["what"], "1 triangle that is there twice");
   ASSERT_EQ(json["meshes"].size(), 1u);
   const auto& figures = json["meshes"][0];
   EXPECT_EQ(figures["nodes"], body.nodes.size());

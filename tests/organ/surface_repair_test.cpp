@@ -63,21 +63,21 @@ TEST_F(SurfaceRepair, CornersApartAreJoined) {
 TEST_F(SurfaceRepair, TrianglesThereTwiceOrWithoutAreaAreLeftOut) {
   TriangleMesh twice = ball_;
   twice.triangles.push_back(ball_.triangles[5]);
-  expect_has(finding(twice, volume_), "1 triangles that are there twice, the first at (");
+  expect_has(finding(twice, volume_), "1 triangle that is there twice, the first at (");
   TriangleMesh flat = ball_;
   flat.triangles.push_back({3, 3, 4});
-  expect_has(finding(flat, volume_), "1 triangles without area");
+  expect_has(finding(flat, volume_), "1 triangle without area");
 }
 
 TEST_F(SurfaceRepair, NodesThatNoTriangleUsesAreToldAndChangeNothing) {
   TriangleMesh far = ball_;
   far.nodes.emplace_back(1e5, 0, 0);
-  expect_has(finding(far, volume_), "1 nodes that no triangle uses, the first at (1e+08, 0, 0) mm: left out");
+  expect_has(finding(far, volume_), "1 node that no triangle uses, the first at (1e+08, 0, 0) mm: left out");
   TriangleMesh sheet = ball_;  // a triangle far away makes a diagonal, and joins no corners
   const int n = static_cast<int>(ball_.nodes.size());
   sheet.nodes.insert(sheet.nodes.end(), {{1e5, 0, 0}, {1e5, 1, 0}, {1e5, 0, 1}});
   sheet.triangles.push_back({n, n + 1, n + 2});
-  expect_has(finding(sheet, volume_), "an open sheet of 1 triangles at (1e+08, 0, 0) mm");
+  expect_has(finding(sheet, volume_), "an open sheet of 1 triangle at (1e+08, 0, 0) mm");
 }
 
 TEST_F(SurfaceRepair, TurnedTrianglesAreTurnedBack) {
@@ -166,7 +166,7 @@ TEST_F(SurfaceRepair, OtherShellsAreReportedByTheirPlace) {
   sheet.nodes.insert(sheet.nodes.end(), {{9, 0, 0}, {9, 1, 0}, {9, 0, 1}});
   const int n = static_cast<int>(ball_.nodes.size());
   sheet.triangles.push_back({n, n + 1, n + 2});
-  expect_has(finding(sheet, volume_), "an open sheet of 1 triangles at (9000, 0, 0) mm");
+  expect_has(finding(sheet, volume_), "an open sheet of 1 triangle at (9000, 0, 0) mm");
 }
 
 // By where shells lie, however they are wound.
@@ -226,7 +226,7 @@ TEST_F(SurfaceRepair, AnEdgeWhereABodyTouchesItselfIsParted) {
   EXPECT_NEAR(enclosed_volume(repaired.mesh), 56, 1e-9);
   EXPECT_FALSE(repaired.crosses_itself);
   ASSERT_EQ(repaired.findings.size(), 2u);  // the first: nodes of the grid that no triangle uses
-  expect_has(say(repaired.findings[1]), "1 edges that more than two triangles share, the first at (2000, 2000, 1500)");
+  expect_has(say(repaired.findings[1]), "1 edge that more than two triangles share, the first at (2000, 2000, 1500)");
 }
 
 TEST_F(SurfaceRepair, ANodeWhereTwoPartsTouchIsParted) {
@@ -236,7 +236,7 @@ TEST_F(SurfaceRepair, ANodeWhereTwoPartsTouchIsParted) {
   EXPECT_NEAR(enclosed_volume(repaired.mesh), volume_, 1e-9);
   ASSERT_EQ(repaired.findings.size(), 2u);
   expect_has(say(repaired.findings[0]),
-             "1 nodes where the surface is not manifold, the first at (1000, 0, 1000) mm: parted there");
+             "1 node where the surface is not manifold, the first at (1000, 0, 1000) mm: parted there");
   expect_has(say(repaired.findings[1]), "a stray shell of 64 triangles");
 }
 
@@ -258,7 +258,7 @@ TEST_F(SurfaceRepair, AnEdgeOfThreeTrianglesIsParted) {
   EXPECT_TRUE(rims_of(repaired.mesh).empty());
   EXPECT_NEAR(enclosed_volume(repaired.mesh), volume_, 0.02 * volume_);
   ASSERT_FALSE(repaired.findings.empty());
-  expect_has(say(repaired.findings[0]), "1 edges that more than two triangles share, the first at (");
+  expect_has(say(repaired.findings[0]), "1 edge that more than two triangles share, the first at (");
 }
 
 }  // namespace

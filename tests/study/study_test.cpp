@@ -8,6 +8,7 @@
 
 #include "common/mesh/shell_file.hpp"
 #include "common/mesh/shell_generators.hpp"
+#include "common/realtime/shutdown.hpp"
 #include "tests/sanitized.hpp"
 #include "tests/study/small_scenes.hpp"
 #include "tools/study/modal.hpp"
@@ -38,6 +39,21 @@ TEST(Patches, AreTheSameEachTimeOnTheTouchableSurfaceAndApart) {
     EXPECT_LT(patch.inward.dot(patch.point - Eigen::Vector3d(0, 0, 0.015)), 0);
     for (std::size_t q = 0; q < p; ++q) EXPECT_GT((patch.point - one.presses().patches[q].point).norm(), 0.01);
   }
+}
+
+TEST(Study, ThatIsStoppedSaysWhatStays) {
+  const Folder folder;
+  const Scene scene = block_scene(folder.at);
+  StudyOptions options = quick();
+  options.say = [](const std::string&) { request_shutdown(); };
+  try {
+    run_study(scene, folder.at / "out", options);
+    FAIL() << "it was not stopped";
+  } catch (const Interrupted& stop) {
+    EXPECT_NE(std::string(stop.what()).find(" settings, which stay in "), std::string::npos) << stop.what();
+  }
+  clear_shutdown();
+  EXPECT_TRUE(std::filesystem::exists(folder.at / "out/study.csv"));
 }
 
 TEST(Study, OfABlockHasItsColumnsItsReferencesAndErrorsThatFallWhereTheyMust) {

@@ -113,6 +113,8 @@ TEST(ToolsHelp, BashOffersCommandsAndEachOfTheirOptionsOnce) {
   EXPECT_EQ(offered("exp"), "export\n");
   EXPECT_EQ(offered("export --"), "--help --topic --csv --jsonl --mcap --output --force\n");
   EXPECT_EQ(offered("drive scene.toml --co"), "--course\n");
+  EXPECT_EQ(offered("record --keep e"), "everything enough\n");
+  EXPECT_EQ(offered("solve scene.toml --method t"), "tensors\n");
   EXPECT_EQ(offered("export log"), "\n") << "files";
 }
 

@@ -89,6 +89,28 @@ TEST(Info, StepsThatTheHapticNodeToldNobodyAreNamed) {
   EXPECT_NE(text.out.find("lacks 25 steps that its haptic node told nobody"), std::string::npos) << text.out;
 }
 
+TEST(Info, ASenseInTheFutureIsTold) {
+  const OwnFolder folder("info-ahead");
+  const std::string log = folder / "ahead.lcmlog";
+  {
+    LogWriter writer(log);
+    writer.write(kHeaderChannel, 1, LogHeader{.schema = schema_text()});
+    for (std::uint64_t seq = 1; seq <= 10; ++seq)
+      writer.write(topics::force_state.name, static_cast<std::int64_t>(1'000'000 * seq),
+                   ForceState{.run = 5, .seq = seq, .step = seq, .sense_ns = 5'000'000, .publish_ns = 4'000'000});
+    writer.finish();
+  }
+  const ProgramResult text = run_program(program("palpate") + " info " + log);
+  EXPECT_NE(text.out.find("palpate/force_state: 4 of 10 say that they were sensed after they were received"),
+            std::string::npos)
+      << text.out;
+  EXPECT_NE(text.out.find("10 of these say that they were written before their step was sensed"), std::string::npos)
+      << text.out;
+  const auto json = nlohmann::json::parse(run_program(program("palpate") + " info --json " + log).out);
+  EXPECT_EQ(json["topics"]["palpate/force_state"]["ahead"], 4);
+  EXPECT_EQ(json["hops_us"]["ahead"], 10);
+}
+
 TEST(Info, ALogsWordsReachNoTerminalAsCommands) {
   const OwnFolder folder("info-words");
   const std::string log = folder / "words.lcmlog";

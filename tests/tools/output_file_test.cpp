@@ -70,6 +70,14 @@ TEST_F(ToolsOutputFile, AFolderIsNoFile) {
   refused_at_once(run("--record", scene_.folder()), {"is a folder"});
 }
 
+TEST_F(ToolsOutputFile, AFolderThatIsNotThereIsNamedBeforeTheRun) {
+  for (const char* option : {"--record", "--film", "--summary"}) {
+    const std::string ending = option[2] == 'r' ? ".lcmlog" : option[2] == 'f' ? ".mp4" : ".json";
+    testing::expect_refusal(run(option, file("none/a") + ending),
+                            {"none/a" + ending + ": it cannot be written, since the folder ", "/none is not there"});
+  }
+}
+
 TEST_F(ToolsOutputFile, AnInputIsNotWrittenOver) {
   refused_at_once(program("palpate") + " export " + file("log") + " --topic tool_state -o " + file("log"),
                   {"log is named by"});

@@ -107,7 +107,7 @@ TEST_F(ToolsVerify, AReplayDoesNotSpeakForNodesThatLiveNorMoveTheMotorsOfADriver
   const auto nodes = bus->writer(topics::node_status);
   ASSERT_TRUE(nodes->write(status));
   testing::expect_refusal(play, {"haptic 7@here lives in domain", "--domain"});
-  EXPECT_EQ(run_program(play + " --topic picture_state").status, 0) << "no node's word";
+  EXPECT_EQ(run_program(play + " --topic node_status").status, 0) << "not of these nodes alone";
 }
 
 TEST_F(ToolsVerify, ALogOfTwoScenesIsRefusedByWhatNeedsOne) {
@@ -133,6 +133,67 @@ TEST_F(ToolsVerify, ALogOfTwoScenesIsRefusedByWhatNeedsOne) {
     EXPECT_NE(refused.err.find("'a plate'"), std::string::npos) << refused.err;
   }
   EXPECT_FALSE(fs::exists(film));
+}
+
+TEST_F(ToolsVerify, TwoRunsAtOnceAreToldWithTheirTimes) {
+  {
+    LogReader reader(log());
+    LogWriter writer(changed(), std::size_t{1} << 30);
+    writer.write(kHeaderChannel, reader.header().start_monotonic_ns, reader.header());
+    ToolState state;
+    for (LogEvent event; reader.next(event);) {
+      writer.write_payload(event.channel, event.receive_ns, event.payload);
+      if (!event.read(topics::tool_state, state) || state.step < 500 || state.step > 1500) continue;
+      state.run = 0xAB;
+      writer.write(event.channel, event.receive_ns, state);
+    }
+    writer.finish();
+  }
+  const std::string two = "changed.lcmlog: it holds two runs at once, ", palpate = program("palpate") + " ";
+  const std::string film = (scene_->folder() / "two.mp4").string(), page = (scene_->folder() / "page").string();
+  testing::expect_refusal(palpate + "film " + changed().string() + " -o " + film, {two, " 00000000000000ab, from "});
+  testing::expect_refusal(palpate + "report " + changed().string() + " -q -o " + page, {two});
+  EXPECT_NE(verify(changed()).err.find(two), std::string::npos);
+  const auto exported = run_program(palpate + "export --topic tool_state " + changed().string());
+  EXPECT_EQ(exported.status, 0);
+  EXPECT_NE(exported.err.find(two), std::string::npos) << exported.err;
+  EXPECT_NE(run_program(palpate + "info " + changed().string()).out.find("it holds two runs at once"),
+            std::string::npos);
+  EXPECT_EQ(run_program(palpate + "info " + log().string()).out.find("two runs"), std::string::npos);
+}
+
+TEST_F(ToolsVerify, WhatTheRecorderLostIsRepeated) {
+  {
+    LogReader reader(log());
+    LogWriter writer(changed(), std::size_t{1} << 30);
+    writer.write(kHeaderChannel, reader.header().start_monotonic_ns, reader.header());
+    LogEvent event;
+    while (reader.next(event)) writer.write_payload(event.channel, event.receive_ns, event.payload);
+    writer.write(kFooterChannel, event.receive_ns, LogFooter{event.receive_ns, 5, 12, "no space left"});
+  }
+  const auto verified = verify(changed());
+  EXPECT_EQ(verified.status, 0) << verified.err;
+  EXPECT_NE(verified.err.find("changed.lcmlog: the recorder lost 12 messages: no space left"), std::string::npos)
+      << verified.err;
+  const auto json =
+      nlohmann::json::parse(run_program(program("palpate") + " replay --verify --json " + changed().string()).out);
+  EXPECT_EQ(json["lost"], 12);
+}
+
+TEST_F(ToolsVerify, ATopicThatTheLogHasNotIsNoReplay) {
+  testing::expect_refusal(fmt::format("{} replay {} --topic modal_state --domain {}", program("palpate"),
+                                      log().string(), testing::own_domain()),
+                          {"holds no sample of palpate/modal_state"});
+}
+
+TEST_F(ToolsVerify, AReportWithoutForcesSaysSo) {
+  rewrite(log(), changed(), [](LogEvent& event) {
+    if (event.channel == topics::force_state.name) event.channel = "palpate/other";
+  });
+  const auto report = run_program(fmt::format("{} report {} --pictures 0 -o {}", program("palpate"), changed().string(),
+                                              (scene_->folder() / "noforce").string()));
+  EXPECT_EQ(report.status, 0) << report.err;
+  EXPECT_NE(report.err.find("holds no sample of palpate/force_state"), std::string::npos) << report.err;
 }
 
 TEST_F(ToolsVerify, StepsBeforeTheFirstKeyframeAreToldOf) {

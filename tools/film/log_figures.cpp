@@ -1,5 +1,6 @@
 #include "tools/film/log_figures.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -120,6 +121,10 @@ void LogFigures::look(const LogEvent& event) {
   if (event.read(topics::force_state, force)) return look(force);
   if (event.read(topics::topology_change, change)) look(change);
   if (event.read(topics::task_record, task)) tasks_[task.body] = task;
+}
+
+bool LogFigures::has_forces() const {
+  return std::ranges::any_of(tools_, [](const OfTool& tool) { return tool.forces > 0; });
 }
 
 nlohmann::ordered_json LogFigures::json() const {

@@ -28,6 +28,7 @@ class LogFigures {
   void look(const LogEvent& event);  ///< in the log's order
   void finish();                     ///< there are no more
   nlohmann::ordered_json json() const;
+  bool has_forces() const;  ///< of any tool
 
   /// Where and how hard a tool was, at most every 10 ms: the largest force of that time [N], the tip's place [m].
   struct Place {

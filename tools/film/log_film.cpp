@@ -33,6 +33,7 @@ Stretch stretch_of(const LogFilmSettings& s, const LogContents& contents) {
 
 LogFilmReport film_log(const LogFilmSettings& s, const std::function<bool(long, long)>& progress) {
   const LoggedScene logged(s.log, s.data);
+  logged.require_one_run();
   keep_files_of(logged.scene(), {s.film, s.still});
   const LogContents contents = contents_of(s.log);
   const Stretch stretch = stretch_of(s, contents);

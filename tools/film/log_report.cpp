@@ -10,6 +10,7 @@
 #include "common/models/marked_to_resect.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "common/scene/find_archive.hpp"
+#include "idl/topics.hpp"
 #include "render_node/renderer.hpp"
 #include "tools/film/log_figures.hpp"
 #include "tools/film/log_pictures.hpp"
@@ -117,8 +118,10 @@ std::map<std::uint32_t, Resection> resections_of(const LoggedScene& logged) {
   return all;
 }
 
-ordered_json report_of(const LogReportSettings& s, std::size_t session, Unfinished& unfinished) {
+ordered_json report_of(const LogReportSettings& s, std::size_t session, Unfinished& unfinished,
+                       std::vector<std::string>& lacks) {
   const LoggedScene logged(s.logs[session], s.data);
+  logged.require_one_run();
   const Scene& scene = logged.scene();
   LogFigures figures(scene, resections_of(logged));
   LogReader reader(s.logs[session]);
@@ -127,6 +130,9 @@ ordered_json report_of(const LogReportSettings& s, std::size_t session, Unfinish
     figures.look(event);
   }
   figures.finish();
+  if (!figures.has_forces())
+    lacks.push_back(fmt::format("{}: it holds no sample of {}: what is reported of forces is none that was felt",
+                                s.logs[session], topics::force_state.name));
   const std::string course = course_name(session);
   unfinished.begin();
   write_course(s.folder / course, figures, scene);
@@ -141,18 +147,20 @@ ordered_json report_of(const LogReportSettings& s, std::size_t session, Unfinish
 
 }  // namespace
 
-std::string report_logs(const LogReportSettings& s, const std::function<void(const std::string&)>& progress) {
+std::vector<std::string> report_logs(const LogReportSettings& s,
+                                     const std::function<void(const std::string&)>& progress) {
   prepare_folder(s.folder, {course_name(0), kCourseHead}, other_files(s));
   Unfinished unfinished(s);
   ordered_json all{{"sessions", ordered_json::array()}};
+  std::vector<std::string> lacks;
   for (std::size_t i = 0; i < s.logs.size(); ++i) {
     progress(s.logs[i]);
-    all["sessions"].push_back(report_of(s, i, unfinished));
+    all["sessions"].push_back(report_of(s, i, unfinished, lacks));
   }
   write_text(s.folder / "report.json", all.dump(2) + "\n");
-  const std::string missing = run_script("report_page.py", s.folder);
+  if (const std::string page = run_script("report_page.py", s.folder); !page.empty()) lacks.push_back(page);
   unfinished.end();
-  return missing;
+  return lacks;
 }
 
 }  // namespace palpate

@@ -14,8 +14,9 @@ struct LogReportSettings {
 };
 
 /// Writes report.json, for each session course_N.csv and picture_N_K.png, N and K from 0, and index.html with all of
-/// it, in a folder that has none of these from elsewhere. Returns the sentence of what is missing for the page, empty
-/// if nothing is. `progress` is told what is done; throws std::runtime_error.
-std::string report_logs(const LogReportSettings& settings, const std::function<void(const std::string&)>& progress);
+/// it, in a folder that has none of these from elsewhere. Returns a sentence of each thing that the page lacks.
+/// `progress` is told what is done; throws std::runtime_error.
+std::vector<std::string> report_logs(const LogReportSettings& settings,
+                                     const std::function<void(const std::string&)>& progress);
 
 }  // namespace palpate

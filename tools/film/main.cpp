@@ -75,8 +75,8 @@ void add_report_command(cli::Command& app) {
   command.examples({"palpate report monday.lcmlog friday.lcmlog -o out/report"});
   command.does([s] {
     catch_shutdown_signals();
-    const std::string missing = report_logs(*s, [](const std::string& log) { cli::say(log); });
-    if (!missing.empty()) fmt::print(stderr, "palpate: {}\n", missing);
+    for (const std::string& sentence : report_logs(*s, [](const std::string& log) { cli::say(log); }))
+      fmt::print(stderr, "palpate: {}\n", sentence);
   });
 }
 

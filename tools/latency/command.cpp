@@ -155,6 +155,7 @@ void print_text(const Result& r) {
   print_row("tool to force", r.hops.force());
   print_row("tool to surface", r.hops.surface());
   print_row("tool to picture", r.hops.picture());
+  fmt::print("{}", ahead_text(r.hops));
   fmt::print("{}", text_of(r.hops.tissue()));
   if (r.hops.uncertainty_ns() > 0)
     fmt::print("the nodes' clocks are known to {:.1f} us\n", 1e-3 * static_cast<double>(r.hops.uncertainty_ns()));

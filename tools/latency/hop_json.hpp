@@ -25,6 +25,7 @@ inline nlohmann::ordered_json json_of(const HopTimes& hops) {
   return {{"tool_to_force", json_of(hops.force())},
           {"tool_to_surface", json_of(hops.surface())},
           {"tool_to_picture", json_of(hops.picture())},
+          {"ahead", hops.ahead()},
           {"clock_uncertainty", 1e-3 * static_cast<double>(hops.uncertainty_ns())}};
 }
 

@@ -1,12 +1,16 @@
 #include "tools/latency/hop_times.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace palpate {
 
-std::int64_t HopTimes::moved(std::int64_t time, const Clock& clock) {
+void HopTimes::record(Histogram& histogram, std::int64_t sense_ns, std::int64_t publish_ns, const Clock& clock) {
   uncertainty_ = std::max(uncertainty_, clock.uncertainty);
-  return time + clock.offset;
+  const std::int64_t time = publish_ns + clock.offset - sense_ns;
+  ahead_ += time < -clock.uncertainty;
+  histogram.record(time);
 }
 
 void HopTimes::add(const NodeStatus& m) {
@@ -20,11 +24,12 @@ void HopTimes::clear_times() {
   force_.clear();
   surface_.clear();
   picture_.clear();
+  ahead_ = 0;
   tissue_.begin_anew();
 }
 
 void HopTimes::add(const ForceState& m) {
-  force_.record(m.publish_ns - m.sense_ns);
+  record(force_, m.sense_ns, m.publish_ns, {});
 }
 
 void HopTimes::add(const SurfaceState& m) {
@@ -33,11 +38,17 @@ void HopTimes::add(const SurfaceState& m) {
   const auto [known, first] = shown_.try_emplace(m.body, newest);
   if (m.run == 0 || (!first && known->second == newest)) return;
   known->second = newest;
-  surface_.record(moved(m.publish_ns, deform_) - m.sense_ns);
+  record(surface_, m.sense_ns, m.publish_ns, deform_);
 }
 
 void HopTimes::add(const PictureState& m) {
-  if (m.run != 0) picture_.record(moved(m.publish_ns, clocks_[m.node]) - m.sense_ns);
+  if (m.run != 0) record(picture_, m.sense_ns, m.publish_ns, clocks_[m.node]);
+}
+
+std::string ahead_text(const HopTimes& hops) {
+  if (hops.ahead() == 0) return {};
+  return fmt::format("{} of these say that they were written before their step was sensed, and count as 0\n",
+                     hops.ahead());
 }
 
 }  // namespace palpate

@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "common/bus/log_reader.hpp"
+#include "common/bus/runs_at_once.hpp"
 #include "common/describe/digest.hpp"
 #include "common/models/content_hash.hpp"
 #include "idl/topics.hpp"
@@ -155,6 +156,12 @@ void LoggedScene::require_one_scene(LogReader& reader, std::int64_t begin_ns) co
         log_.string(), title_of(reader.header().scene), 1e-9 * static_cast<double>(event.receive_ns - begin_ns),
         title_of(scene.text)));
   }
+}
+
+void LoggedScene::require_one_run() const {
+  if (const std::string two = runs_at_once(log_); !two.empty())
+    throw std::runtime_error(
+        fmt::format("{}: {}; what is drawn or reported is of one: record each by itself", log_.string(), two));
 }
 
 // One at a time: a log may hold more than the memory.

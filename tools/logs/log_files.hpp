@@ -38,6 +38,8 @@ class LoggedScene {
   LoggedScene& operator=(const LoggedScene&) = delete;
 
   const Scene& scene() const { return scene_; }
+  /// Throws std::runtime_error where two runs stand in the log at once: they are no one session.
+  void require_one_run() const;
   /// Computes the archives that are not here, and says so on standard error. Returns the bodies that it did so for.
   /// Throws as ensure_archive() does.
   std::vector<std::string> ensure_archives() const;

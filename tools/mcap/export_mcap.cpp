@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/bus/log_reader.hpp"
+#include "common/bus/runs_at_once.hpp"
 #include "common/realtime/shutdown.hpp"
 #include "idl/topics.hpp"
 #include "tools/mcap/cdr.hpp"
@@ -59,11 +60,14 @@ std::uint64_t export_mcap(const std::filesystem::path& log, const std::string& t
                           const std::filesystem::path& file) {
   LogReader reader(log);
   Export to(reader, file);
+  RunsAtOnce runs;
   for (LogEvent event; reader.next(event);) {
     stop_if_interrupted();
+    runs.add(event);
     to.add(event, topic);
   }
   if (!reader.damage_text().empty()) fmt::print(stderr, "palpate: {}\n", reader.damage_text());
+  if (!runs.text().empty()) fmt::print(stderr, "palpate: {}: {}\n", log.string(), runs.text());
   if (to.messages() == 0) throw std::runtime_error(fmt::format("{}: holds no such sample", log.string()));
   to.finish();
   return to.messages();

@@ -77,14 +77,18 @@ void McapWriter::Times::add(std::uint64_t time) {
 
 McapWriter::McapWriter(const std::filesystem::path& file)
     : path_(file), whole_(file), file_(std::fopen(whole_.handle().c_str(), "wb")) {
-  if (!file_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+  require(file_ != nullptr);
   Bytes begin(std::begin(kMagic), std::end(kMagic));
   add_record(begin, header, Fields().text("").text("palpate " PALPATE_VERSION));
   put(begin);
 }
 
+void McapWriter::require(bool good) const {
+  if (!good) throw std::runtime_error(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
+}
+
 void McapWriter::put(const Bytes& bytes) {
-  good_ = good_ && std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size();
+  require(std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size());
   at_ += bytes.size();
 }
 
@@ -186,8 +190,7 @@ void McapWriter::finish() {
   last.insert(last.end(), sum.bytes.begin(), sum.bytes.end());
   last.insert(last.end(), std::begin(kMagic), std::end(kMagic));
   put(last);
-  if (!good_ || std::fflush(file_.get()) != 0)
-    throw std::runtime_error(fmt::format("{}: cannot be written", path_.string()));
+  require(std::fflush(file_.get()) == 0);
   whole_.commit();
 }
 

@@ -51,6 +51,7 @@ class McapWriter {
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
+  void require(bool good) const;  ///< throws std::runtime_error with the reason that errno has
   void put(const Bytes& bytes);
   void end_chunk();
   Bytes summary() const;
@@ -59,8 +60,7 @@ class McapWriter {
   AtomicFile whole_;
   std::unique_ptr<std::FILE, Close> file_;
   std::uint64_t at_ = 0;  ///< [bytes] written
-  bool good_ = true;
-  Bytes channels_;  ///< records of schemas and channels, which the summary repeats
+  Bytes channels_;        ///< records of schemas and channels, which the summary repeats
   std::uint16_t channel_count_ = 0;
   Chunk chunk_;
   Bytes chunk_indexes_;

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <initializer_list>
 
 #include "common/contact/tool_contacts.hpp"
 #include "common/files/ending.hpp"
@@ -26,11 +26,18 @@ void say_groups(const TetMesh& mesh, CheckOutput& out) {
   out.say("  groups: " + (names.empty() ? "none" : names));
 }
 
+bool has_one_of(const std::filesystem::path& file, std::initializer_list<const char*> endings) {
+  return std::ranges::any_of(endings, [&](const char* ending) { return has_ending(file, ending); });
+}
+
 }  // namespace
 
 bool names_mesh(const std::filesystem::path& file) {
-  constexpr std::array<const char*, 7> kEndings{".msh", ".vtk", ".stl", ".obj", ".ply", ".off", ".vtp"};
-  return std::ranges::any_of(kEndings, [&](const char* ending) { return has_ending(file, ending); });
+  return has_one_of(file, {".msh", ".vtk", ".stl", ".obj", ".ply", ".off", ".vtp"});
+}
+
+bool names_image(const std::filesystem::path& file) {
+  return has_one_of(file, {".inr", ".inr.gz", ".mha", ".mhd", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".dcm"});
 }
 
 void check_mesh(const std::filesystem::path& file, CheckOutput& out) {

@@ -130,8 +130,6 @@ void add_mesh_options(cli::Command& command, MeshOptions& o) {
 
 MeshFineness fineness_of(const MeshOptions& o) {
   MeshFineness f{o.nodes, o.edge, o.inside, o.deviation, {}};
-  check_folder_of(o.output);
-  check_folder_of(o.report);
   for (const std::string& text : o.fine) f.fine.push_back(parse_fine_place(text));
   check_groups(o.groups);
   if (o.tool_radius > 0 && o.groups.empty())

@@ -265,7 +265,6 @@ void check_outputs(const OrganOptions& own) {
 void make_organ(const OrganOptions& o) {
   Output out(o.json);
   fineness_of(o);  // what cannot be read, or written later, is told at once
-  check_folder_of(o.visual);
   check_picture_folder(o.preview);
   const std::vector<NamedLabel> labels = labels_of(o);
   check_groups(o.groups, names_of(labels));

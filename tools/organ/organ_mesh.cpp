@@ -54,15 +54,17 @@ double first_guess(const SolidMeasures& measures, const MeshFineness& f) {
 double edge_for(const Solid& solid, const SolidMeasures& measures, const MeshFineness& f,
                 const std::function<void(const std::string&)>& say) {
   const double longest = kLongestOfGuess * first_guess(measures, f);
-  double edge = first_guess(measures, f);
+  double edge = first_guess(measures, f), nodes = 0;
   for (int i = 0; i < kTries; ++i) {
-    const auto nodes = nodes_at(solid, sizes_at(solid, f, edge));
+    nodes = nodes_at(solid, sizes_at(solid, f, edge));
     const double off = nodes / f.nodes;
     if (std::abs(off - 1) < kNearEnough) return edge;
     if (off > 1 && edge == longest) break;
     edge = std::min(edge * std::pow(off, 0.45), longest);
   }
-  say(fmt::format("{} nodes are not met: the deviation from the surface and fine places ask for others", f.nodes));
+  say(fmt::format(
+      "of the {} nodes that are asked for, about {:.0f} are as near as the shape, --deviation and fine places allow",
+      f.nodes, nodes));
   return edge;
 }
 

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <stdexcept>
-
 #include "common/describe/printable.hpp"
 #include "tools/organ/label_volume.hpp"
 
@@ -26,14 +23,6 @@ void Output::finish() const {
   Json all = figures_;
   all["warnings"] = warnings_;
   fmt::print("{}\n", all.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
-
-void check_folder_of(const std::string& file) {
-  if (file.empty()) return;
-  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
-  if (!std::filesystem::is_directory(folder))
-    throw std::runtime_error(fmt::format("{}: it cannot be written, since the folder {} is not there", printable(file),
-                                         printable(folder.string())));
 }
 
 void tell_image(const std::string& file, const GridShape& shape, Output& out) {

@@ -30,10 +30,6 @@ class Output {
   std::vector<std::string> warnings_;
 };
 
-/// Throws std::runtime_error where the folder that a file is to be written in is not there; an empty name asks for
-/// none. To be called before the work whose result it is.
-void check_folder_of(const std::string& file);
-
 /// An image and its size, told and noted.
 void tell_image(const std::string& file, const GridShape& shape, Output& out);
 

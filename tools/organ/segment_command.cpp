@@ -157,7 +157,6 @@ void tell_segmentation(const SegmentOptions& o, const GridShape& shape, const Se
 
 void segment_image(const SegmentOptions& o) {
   Output out(o.json);
-  check_folder_of(o.output);
   check_picture_folder(o.preview);
   say_progress("reading the image");
   GreyVolume volume = read_grey_volume(o.image, o.series);

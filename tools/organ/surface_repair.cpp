@@ -30,10 +30,15 @@ Eigen::Vector3d place_of(const TriangleMesh& mesh, const Triangle& t) {
   return (mesh.nodes[t[0]] + mesh.nodes[t[1]] + mesh.nodes[t[2]]) / 3;
 }
 
+struct Counted {
+  const char *one, *many;
+};
+
 /// Many of one kind, if there are any: "3 triangles without area".
-void note(const std::string& what, const char* done, std::vector<Eigen::Vector3d> places,
-          std::vector<Finding>& findings) {
-  if (!places.empty()) findings.push_back({fmt::format("{} {}", places.size(), what), done, std::move(places)});
+void note(const Counted& what, const char* done, std::vector<Eigen::Vector3d> places, std::vector<Finding>& findings) {
+  const std::size_t count = places.size();
+  if (count > 0)
+    findings.push_back({fmt::format("{} {}", count, count == 1 ? what.one : what.many), done, std::move(places)});
 }
 
 /// Corners at one place, by the cells of a grid and their neighbours.
@@ -92,7 +97,7 @@ void leave_unused_nodes_out(TriangleMesh& mesh, std::vector<Finding>& findings) 
   for (Triangle& t : mesh.triangles)
     for (int& n : t) n = number[n];
   mesh.nodes = used;
-  note("nodes that no triangle uses", "left out", std::move(places), findings);
+  note({"node that no triangle uses", "nodes that no triangle uses"}, "left out", std::move(places), findings);
 }
 
 TriangleMesh join_corners(const TriangleMesh& mesh, double near) {
@@ -106,7 +111,7 @@ TriangleMesh join_corners(const TriangleMesh& mesh, double near) {
 
 /// Takes triangles away that `which` says, and notes them.
 template <class Which>
-void take_away(TriangleMesh& mesh, const char* what, std::vector<Finding>& findings, const Which& which) {
+void take_away(TriangleMesh& mesh, const Counted& what, std::vector<Finding>& findings, const Which& which) {
   std::vector<Triangle> kept;
   std::vector<Eigen::Vector3d> places;
   for (const Triangle& t : mesh.triangles)
@@ -119,10 +124,10 @@ void take_away(TriangleMesh& mesh, const char* what, std::vector<Finding>& findi
 }
 
 void take_repeated_away(TriangleMesh& mesh, std::vector<Finding>& findings) {
-  take_away(mesh, "triangles without area", findings,
+  take_away(mesh, {"triangle without area", "triangles without area"}, findings,
             [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
   std::set<Triangle> known;
-  take_away(mesh, "triangles that are there twice", findings, [&](Triangle t) {
+  take_away(mesh, {"triangle that is there twice", "triangles that are there twice"}, findings, [&](Triangle t) {
     std::ranges::sort(t);
     return !known.insert(t).second;
   });
@@ -136,7 +141,8 @@ void note_needles(const TriangleMesh& mesh, std::vector<Finding>& findings) {
     const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (a - b).squaredNorm()});
     if (a.cross(b).norm() <= kNoArea * longest) places.push_back(place_of(mesh, t));
   }
-  note("triangles whose corners lie on a line", "they bound nothing", std::move(places), findings);
+  note({"triangle whose corners lie on a line", "triangles whose corners lie on a line"}, "they bound nothing",
+       std::move(places), findings);
 }
 
 void note_crowded_edges(const TriangleMesh& mesh, std::vector<Finding>& findings) {
@@ -151,7 +157,8 @@ void note_crowded_edges(const TriangleMesh& mesh, std::vector<Finding>& findings
     if (next - edge > 2) places.push_back(0.5 * (mesh.nodes[(*edge)[0]] + mesh.nodes[(*edge)[1]]));
     edge = next;
   }
-  note("edges that more than two triangles share", "parted there", std::move(places), findings);
+  note({"edge that more than two triangles share", "edges that more than two triangles share"}, "parted there",
+       std::move(places), findings);
 }
 
 /// Turned triangles are the fewer ones of each shell: all come to lie as most of theirs did.
@@ -181,8 +188,9 @@ void orient(TriangleMesh& mesh, std::vector<Finding>& findings) {
     }
     for (const int t : of_shell) places.push_back(place_of(mesh, mesh.triangles[t]));
   }
-  note("triangles turned against their neighbours", "turned", std::move(places), findings);
-  note("nodes where the surface is not manifold", "parted there",
+  note({"triangle turned against its neighbours", "triangles turned against their neighbours"}, "turned",
+       std::move(places), findings);
+  note({"node where the surface is not manifold", "nodes where the surface is not manifold"}, "parted there",
        {mesh.nodes.begin() + static_cast<std::ptrdiff_t>(known.size()), mesh.nodes.end()}, findings);
 }
 
@@ -228,7 +236,8 @@ std::vector<std::pair<int, int>> crossings_of(const TriangleMesh& mesh) try {
 bool note_crossings(const TriangleMesh& mesh, std::vector<Finding>& findings) {
   std::vector<Eigen::Vector3d> places;
   for (const auto& [a, b] : crossings_of(mesh)) places.push_back(place_of(mesh, mesh.triangles[a]));
-  note("pairs of triangles cross one another", "the body is all that the surface goes round", places, findings);
+  note({"pair of triangles cross one another", "pairs of triangles cross one another"},
+       "the body is all that the surface goes round", places, findings);
   return !places.empty();
 }
 

@@ -251,7 +251,8 @@ void leave_open_shells_out(TriangleMesh& mesh, double max_hole, std::vector<Find
     if (widest_hole(*part) <= max_hole && part->triangles.size() > 1)
       append(kept, *part);
     else
-      findings.push_back({fmt::format("an open sheet of {} triangles", part->triangles.size()),
+      findings.push_back({fmt::format("an open sheet of {} triangle{}", part->triangles.size(),
+                                      part->triangles.size() == 1 ? "" : "s"),
                           "left out",
                           {part->nodes[0]},
                           "open sheets"});

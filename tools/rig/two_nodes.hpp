@@ -57,7 +57,7 @@ class TwoNodes {
   std::unique_ptr<HapticStep> haptic_;
   std::unique_ptr<DynamicWorld> world_;
   std::unique_ptr<LocalModels> models_;
-  std::vector<LocalContactModel> model_;  ///< the newest, per tool
+  std::vector<LocalContactModel> model_;                  ///< the newest, per tool
   std::deque<std::vector<LocalContactModel>> under_way_;  ///< a tick each
   std::size_t delay_ = 0;
   std::uint64_t haptic_run_ = 0, tissue_run_ = 0;

@@ -96,6 +96,7 @@ std::vector<std::string> setting_alone(const Arguments& arguments, const Scene& 
 }
 
 void run(const Arguments& arguments) {
+  catch_shutdown_signals();
   study::StudyOptions options{
       .quick = arguments.quick, .references = arguments.references, .budget_text = arguments.budget, .say = tell};
   options.jobs = arguments.jobs;
@@ -107,10 +108,7 @@ void run(const Arguments& arguments) {
   if (several && arguments.setting >= 0) throw std::runtime_error("study: --setting is of one scene");
   std::FILE* const to = arguments.json ? stderr : stdout;
   if (several && options.references.empty()) options.references = out / "references";
-  if (arguments.jobs > 1) {
-    setenv("OMP_NUM_THREADS", "1", 0);  // each setting keeps to one core
-    catch_shutdown_signals();
-  }
+  if (arguments.jobs > 1) setenv("OMP_NUM_THREADS", "1", 0);  // each setting keeps to one core
   for (const Scene& scene : load_scenes(arguments.scenes, parse_changes(arguments.set))) {
     const auto folder = several ? out / scene.file.stem() : out;
     options.setting_alone = [&](std::size_t setting) {

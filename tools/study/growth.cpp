@@ -13,6 +13,7 @@
 #include "common/models/catheter/catheter_body.hpp"
 #include "common/models/modal_shell/precompute.hpp"
 #include "common/models/quasi_static/precompute.hpp"
+#include "common/realtime/shutdown.hpp"
 #include "tools/rig/example_bodies.hpp"
 #include "tools/study/ball_press.hpp"
 #include "tools/study/measure.hpp"
@@ -36,6 +37,7 @@ class Growth {
     out_ << fmt::format("{},{},{:.6g},{:.6g},{:.6g}\n", what, unit, size, 1e6 * time.median, 1e6 * time.p99);
     if (!out_.flush()) throw std::runtime_error("growth.csv cannot be written");
     say_(fmt::format("{}: {:.6g} {}: {:.4g} us", what, size, unit, 1e6 * time.median));
+    if (shutdown_requested()) throw Interrupted("stopped before its end: growth.csv has what was measured until then");
   }
 
  private:

@@ -106,9 +106,14 @@ class Sweep {
                         if (status != 0)  // it is computed here then
                           say(missing[c], fmt::format("its process ended with status {}", status));
                       }});
-    if (shutdown_requested())
-      throw Interrupted(fmt::format("study: stopped; {} of {} settings are kept in {}", size() - missing.size() + done,
-                                    size(), folder_.string()));
+    if (shutdown_requested()) stop(size() - missing.size() + done);
+  }
+
+  /// Throws Interrupted, with where what is done is kept.
+  [[noreturn]] void stop(std::size_t settled) const {
+    throw Interrupted(
+        fmt::format("stopped after {} of {} settings, which stay in {}: the same command goes on from there", settled,
+                    size(), folder_.string()));
   }
 
  private:
@@ -148,6 +153,7 @@ Result run_study(const Scene& scene, const std::filesystem::path& folder, const 
   if (options.jobs > 1) sweep.settle_beside_one_another();
   Result result;
   for (std::size_t i = 0; i < sweep.size(); ++i) {
+    if (shutdown_requested()) sweep.stop(i);
     append(result, sweep.settle(i));
     write_result(result, folder);
   }
