@@ -29,7 +29,7 @@ ROWS = [  # key, words, unit, factor, digits
     ("touching_s", "touching", "s", 1, 2),
     ("force_max_n", "largest force", "N", 1, 3),
     ("force_mean_n", "mean force while touching", "N", 1, 3),
-    ("impulse_n_s", "force over time", "N s", 1, 3),
+    ("impulse_n_s", "impulse of the force", "N s", 1, 3),
     ("force_change_max_n", "largest change of force in a step", "N", 1, 4),
 ]
 FLAGS = {

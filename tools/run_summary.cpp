@@ -51,7 +51,8 @@ void print_summary(const nlohmann::json& s) {
         number(web, "rate_hz"), 1e-3 * number(web, "latency_us_p50"), 1e-3 * number(web, "latency_us_p99"),
         web.value("refused_requests", 0), web.value("thrown_out", 0));
   if (recorder.is_object())
-    fmt::print("recorder {} messages, {} lost\n", recorder.value("messages", 0), recorder.value("lost", 0));
+    fmt::print("recorder {} messages, {} lost, {} that did not reach it\n", recorder.value("messages", 0),
+               recorder.value("lost", 0), recorder.value("missing", 0));
   if (const std::string limits = limits_met_in(s); !limits.empty()) fmt::print("limits   {}\n", limits);
 }
 

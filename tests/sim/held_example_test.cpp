@@ -1,9 +1,10 @@
-// Tools in the hand of a page, which feels nothing, at the tissues of two examples: the tool, which gives way to the
+// Tools in the hand of a page, which feels nothing, at the tissues of examples: the tool, which gives way to the
 // force, and the force must not feed each other.
 #include <gtest/gtest.h>
 
 #include "common/devices/device.hpp"
 #include "common/scene/ensure_archive.hpp"
+#include "common/scene/scene_changes.hpp"
 #include "common/tool/motion_guard.hpp"
 #include "tools/rig/tip_at.hpp"
 #include "tools/rig/two_nodes.hpp"
@@ -13,15 +14,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The first tool of an example under a pointer, tick by tick; the others stand. What moving tissue tells comes late, as
-/// from a node of its own that has a busy host.
+/// The first tool of an example under a pointer, tick by tick; the others stand. What moving tissue tells comes late,
+/// as from a node of its own that has a busy host.
 class HeldExample {
  public:
   static constexpr int kLateTicks = 4;
   static constexpr int kSampleApart = 16;  // ticks: sixty samples a second
 
-  HeldExample(const std::string& name, const Vector3d& start) : at_(start) {
-    scene_ = load_scene(std::string(PALPATE_SOURCE_DIR) + "/scenes/" + name);
+  HeldExample(const std::string& name, const Vector3d& start, const std::vector<SceneChange>& changes = {})
+      : at_(start) {
+    scene_ = load_scene(std::string(PALPATE_SOURCE_DIR) + "/scenes/" + name, changes);
     scene_.tools[0].device = PointerDeviceSpec{.start = start};
     nodes_ = std::make_unique<TwoNodes>(scene_, load_or_precompute(scene_, ArchivePart::surface));
     nodes_->delay(kLateTicks);
@@ -136,6 +138,17 @@ TEST(HeldExample, AMouseThatSlipsOffTheDuctIsNotLetGoInOneTick) {
   duct.stand_at({-0.0105, -0.0158, 0.047}, 1);
   expect_calm(duct.stand_at({-0.0105, -0.0158, -0.052}, 1.2), 4, 0.251, 0.05, "down");
   EXPECT_EQ(duct.force(), 0) << "beside it";
+}
+
+// A hundred times as stiff as the scene has it, and a thousand.
+TEST(HeldExample, AMouseThatIsLedIntoAHardLiverRestsOnIt) {
+  for (const char* young : {"600e3", "6e6"}) {
+    HeldExample liver("liver.toml", {-0.0297, -0.07, 0.072}, {{"body.young", young}});
+    liver.stand(0.3);
+    liver.stand_at({-0.028, -0.02, 0.005}, 1.5);
+    expect_calm(liver.stand(1), 2 + 1e-6, 1e-5, 1e-5, young);
+    EXPECT_NEAR(liver.force(), 2, 1e-6) << young;
+  }
 }
 
 }  // namespace

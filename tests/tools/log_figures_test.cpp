@@ -67,6 +67,19 @@ TEST_F(Figures, EachRunOfTheHapticNodeBeginsWhereTheLogHasIt) {
   EXPECT_NEAR(last_time(), 0.33, 1e-9);
 }
 
+TEST_F(Figures, TheScenesTimeBeginsWithItsFirstStepWhereverTheLogDoes) {
+  flagged_steps(1, 2300, 2310, 0);
+  EXPECT_NEAR(figures_.scene_begin(), figures_.course()[0].time - 2.3, 1e-9);
+}
+
+TEST_F(Figures, StepsThatTheLogLacksAreCounted) {
+  flagged_steps(1, 0, 10, 0);
+  EXPECT_EQ(figures_.missing(), 0u);
+  flagged_steps(1, 15, 20, 0);
+  flagged_steps(2, 100, 110, 0);
+  EXPECT_EQ(figures_.missing(), 5u) << "another run begins where it begins";
+}
+
 // As recorders write them: a batch of one topic, then one of another, and the last steps without a force.
 TEST_F(Figures, EachStepHasItsOwnForceWhereverTheLogHasIt) {
   const auto newton = [](std::uint64_t step) { return step < 30 ? 0.01 * static_cast<double>(step) : 0.3; };

@@ -41,7 +41,12 @@ void LogFigures::look(const ToolState& state) {
   OfTool& tool = tools_[state.tool];
   if (!tool.waiting.empty() && tool.waiting.back().state.run != state.run) settle(tool, 0);
   std::erase_if(tool.forces_ahead, [&](const ForceState& f) { return f.run != state.run; });
-  tool.waiting.push_back({state, time_of(state)});
+  const bool goes_on = tool.newest && tool.newest->run == state.run && state.step > tool.newest->step;
+  if (goes_on) missing_ += state.step - tool.newest->step - 1;
+  tool.newest = state;
+  const double time = time_of(state);
+  if (!scene_begin_) scene_begin_ = time - static_cast<double>(state.step) / scene_.rates.haptic_hz;
+  tool.waiting.push_back({state, time});
   settle(tool, kMayWait);
 }
 

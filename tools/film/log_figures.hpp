@@ -28,7 +28,10 @@ class LogFigures {
   void look(const LogEvent& event);  ///< in the log's order
   void finish();                     ///< there are no more
   nlohmann::ordered_json json() const;
-  bool has_forces() const;  ///< of any tool
+  bool has_forces() const;                            ///< of any tool
+  std::uint64_t missing() const { return missing_; }  ///< steps of tools that the log lacks between two that it has
+  /// [s] of the log when the scene's own time began: before 0 where the recorder came later.
+  double scene_begin() const { return scene_begin_.value_or(0); }
 
   /// Where and how hard a tool was, at most every 10 ms: the largest force of that time [N], the tip's place [m].
   struct Place {
@@ -59,6 +62,7 @@ class LogFigures {
     std::uint64_t steps = 0, forces = 0;     ///< that the log has
     std::array<std::uint64_t, 9> flagged{};  ///< steps with each bit of ForceFlag
     std::optional<Silence> silence;          ///< that lasts
+    std::optional<ToolState> newest;         ///< that the log has told
     std::uint64_t run = 0;                   ///< of the last step
     double time = 0;                         ///< [s] of it
     std::size_t latest = 0;                  ///< of its places, from 1; 0: none yet
@@ -79,7 +83,8 @@ class LogFigures {
   std::map<std::uint32_t, Resection> resections_;
   std::map<std::uint32_t, TaskRecord> tasks_;  ///< by catheter
   std::vector<Place> course_;
-  std::uint64_t run_ = 0;
+  std::uint64_t run_ = 0, missing_ = 0;
+  std::optional<double> scene_begin_;
   LogTime log_time_;
   double now_ = 0, shift_ = 0;  ///< [s] of the log; from the haptic node's clock to it
 };

@@ -71,8 +71,8 @@ class Unfinished {
 void write_course(const fs::path& file, const LogFigures& figures, const Scene& scene) {
   std::string text = kCourseHead;
   for (const LogFigures::Place& p : figures.course())
-    text += fmt::format("{:.4f},{},{:.5f},{:.5f},{:.5f},{:.5g}\n", p.time, scene.tools[p.tool].name, p.tip.x(),
-                        p.tip.y(), p.tip.z(), p.force);
+    text += fmt::format("{:.4f},{},{:.5f},{:.5f},{:.5f},{:.5g}\n", p.time - figures.scene_begin(),
+                        scene.tools[p.tool].name, p.tip.x(), p.tip.y(), p.tip.z(), p.force);
   write_text(file, text);
 }
 
@@ -83,7 +83,8 @@ std::vector<double> picture_times(const LogContents& contents, int count) {
   return times;
 }
 
-ordered_json draw(const LogReportSettings& s, std::size_t session, const LoggedScene& logged) {
+/// `scene_begin` [s]: as of LogFigures; times are told from it on.
+ordered_json draw(const LogReportSettings& s, std::size_t session, const LoggedScene& logged, double scene_begin) {
   ordered_json drawn = ordered_json::array();
   if (s.pictures == 0) return drawn;
   logged.ensure_archives();
@@ -100,7 +101,7 @@ ordered_json draw(const LogReportSettings& s, std::size_t session, const LoggedS
     renderer.draw(frame, image);
     const std::string name = picture_name(session, drawn.size());
     write_png(image, s.folder / name);
-    drawn.push_back({{"time", time}, {"file", name}});
+    drawn.push_back({{"time", time - scene_begin}, {"file", name}});
   }
   return drawn;
 }
@@ -118,6 +119,15 @@ std::map<std::uint32_t, Resection> resections_of(const LoggedScene& logged) {
   return all;
 }
 
+/// What the log is known to lack, in sentences; empty where that is nothing.
+std::string damage_of(const LogReader& reader, const LogFigures& figures) {
+  std::string text = reader.damage_text();
+  if (figures.missing() > 0)
+    text += fmt::format("{}{} steps of the tools are not in the log; figures and curves are of the others",
+                        text.empty() ? "" : "; ", figures.missing());
+  return text;
+}
+
 ordered_json report_of(const LogReportSettings& s, std::size_t session, Unfinished& unfinished,
                        std::vector<std::string>& lacks) {
   const LoggedScene logged(s.logs[session], s.data);
@@ -133,15 +143,17 @@ ordered_json report_of(const LogReportSettings& s, std::size_t session, Unfinish
   if (!figures.has_forces())
     lacks.push_back(fmt::format("{}: it holds no sample of {}: what is reported of forces is none that was felt",
                                 s.logs[session], topics::force_state.name));
+  const std::string damage = damage_of(reader, figures);
+  if (!damage.empty()) lacks.push_back(fmt::format("{}: {}", s.logs[session], damage));
   const std::string course = course_name(session);
   unfinished.begin();
   write_course(s.folder / course, figures, scene);
   ordered_json report{{"log", s.logs[session]},
                       {"title", scene.title.empty() ? scene.file.stem().string() : scene.title},
-                      {"damage", reader.damage_text()},
+                      {"damage", damage},
                       {"course", course}};
   report.update(figures.json());
-  report["pictures"] = draw(s, session, logged);
+  report["pictures"] = draw(s, session, logged, figures.scene_begin());
   return report;
 }
 
