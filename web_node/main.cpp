@@ -24,10 +24,11 @@ struct WebOptions {
 };
 WebOptions options;
 
-web::ServerSettings server_settings(const Web& scene) {
+web::ServerSettings server_settings(const Scene& scene) {
   web::ServerSettings settings;
-  settings.address = options.address.empty() ? scene.address : options.address;
-  settings.port = options.port < 0 ? scene.port : options.port;
+  settings.address = options.address.empty() ? scene.web.address : options.address;
+  settings.port = options.port < 0 ? scene.web.port : options.port;
+  settings.tools = static_cast<int>(scene.tools.size());
   if (!web::is_loopback(settings.address)) settings.secret = web::random_secret();
   return settings;
 }
@@ -133,7 +134,7 @@ void run(const NodeOptions& o) {
   if (has_moving_tissue(scene)) topology.emplace(*bus, presence, loaded.archives);
   web::Hands hands(offered_tools(scene, origin), static_cast<std::uint64_t>(now_ns() / 1'000'000));
   Pages pages(*bus, hands);
-  const web::ServerSettings settings = server_settings(scene.web);
+  const web::ServerSettings settings = server_settings(scene);
   web::Server server(settings, {.said = [&](std::uint32_t page, const web::Said& said) { pages.said(page, said); },
                                 .gone = [&](std::uint32_t page) { hands.gone(page); }});
   server.publish(web::scenery, {false, web::scenery_message(scene, surfaces, backdrop_of(scene), visuals, origin)});

@@ -128,6 +128,8 @@ std::optional<Said> decode(std::string_view bytes) {
   if (kind < Said::sample || kind > Said::rest || (kind == Said::sample) != (bytes.size() == 32)) return {};
   said.kind = static_cast<Said::Kind>(kind);
   said.tool = get<std::uint8_t>(bytes, 1);
+  const bool of_no_tool = said.kind == Said::taken || said.kind == Said::rest;
+  if (get<std::uint16_t>(bytes, 2) != 0 || (of_no_tool && said.tool != 0)) return {};
   said.number = get<std::uint32_t>(bytes, 4);
   if (said.kind != Said::sample) return said;
   Sample& s = said.motion;

@@ -85,7 +85,7 @@ struct Said {
 };
 inline constexpr std::size_t kMaxBytesSaid = 32;
 
-/// Empty for what is no such message: wrong length, kind, or a number that is none.
+/// Empty for what is no such message: wrong length or kind, bits that are reserved, or a number that is none.
 std::optional<Said> decode(std::string_view bytes);
 
 }  // namespace palpate::web

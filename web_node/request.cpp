@@ -37,7 +37,8 @@ void Request::read() {
   stream_.expires_after(std::chrono::seconds(10));
   http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
     if (!error) return self->answer();
-    if (error == http::error::end_of_stream || error == beast::error::timeout) return;
+    const bool silent = error == beast::error::timeout && !self->parser_->got_some();
+    if (error == http::error::end_of_stream || silent) return;
     if (error == http::error::unexpected_body) return self->refuse(http::status::method_not_allowed, "GET alone\n");
     if (error.category() == make_error_code(http::error::bad_version).category())
       return self->refuse(http::status::bad_request, "no request of HTTP/1.1\n");

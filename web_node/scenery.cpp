@@ -2,6 +2,7 @@
 
 #include "common/mesh/near_origin.hpp"
 #include "common/mesh/normals.hpp"
+#include "common/models/marked_to_resect.hpp"
 #include "common/tool/instrument.hpp"
 #include "common/view/backdrop.hpp"
 #include "common/view/instrument.hpp"
@@ -80,6 +81,7 @@ json body_of(const Body& spec, const SurfaceMap& surface, const Render& render, 
             {"colour", look.colour},       {"max_triangles", look.max_triangles},
             {"thickness", look.thickness}, {"rest", to.add(places_from(origin, surface.position))}};
   if (!look.texture.empty()) body["texture"] = to.add(look.texture);
+  if (const Box* marked = marked_to_resect(spec)) body["marked"] = {of(marked->min - origin), of(marked->max - origin)};
   if (visual) body["visual"] = visual_of(*visual, look.colour, to);
   return body;
 }
@@ -140,7 +142,8 @@ std::string scenery_message(const Scene& scene, std::span<const SurfaceMap> surf
                                            {{"eye", of(camera.eye - origin)},
                                             {"target", of(camera.target - origin)},
                                             {"up", of(camera.up)},
-                                            {"field_of_view", camera.field_of_view}}},
+                                            {"field_of_view", camera.field_of_view},
+                                            {"aspect", static_cast<double>(render.width) / render.height}}},
                                           {"colour", word_of(render.colour)},
                                           {"mucosa_colour", kMucosaColour},
                                           {"bodies", bodies},

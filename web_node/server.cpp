@@ -31,6 +31,7 @@ struct Server::Impl : SessionHost, RequestHost {
       : listeners(std::move(heard)),
         guard(settings.secret, is_loopback(settings.address)),
         most(settings.max_viewers),
+        tool_count(settings.tools),
         acceptor(context,
                  tcp::endpoint(asio::ip::make_address(settings.address), static_cast<unsigned short>(settings.port))) {}
 
@@ -69,6 +70,7 @@ struct Server::Impl : SessionHost, RequestHost {
 
   const Door& door() const override { return guard; }
   Counts& counts() override { return counted; }
+  int tools() const override { return tool_count; }
   bool room() const override { return seat.use_count() <= most; }
   void upgrade(tcp::socket&& socket, const beast::http::request<beast::http::empty_body>& request) override {
     std::make_shared<Session>(std::move(socket), *this, ++last_number, seat)->run(request);
@@ -90,7 +92,7 @@ struct Server::Impl : SessionHost, RequestHost {
 
   Listeners listeners;
   Door guard;
-  int most;
+  int most, tool_count;
   Counts counted;
   asio::io_context context{1};
   tcp::acceptor acceptor;

@@ -12,6 +12,7 @@ struct ServerSettings {
   int port = 0;        ///< 0: any that is free
   std::string secret;  ///< empty: none
   int max_viewers = 16;
+  int tools = 1;  ///< of the scene
 };
 
 /// What pages say, told on the server's thread.

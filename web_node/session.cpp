@@ -41,10 +41,10 @@ void Session::heard(std::size_t bytes) {
   const auto said =
       socket_.got_binary() ? decode({static_cast<const char*>(buffer_.data().data()), bytes}) : std::optional<Said>();
   buffer_.consume(buffer_.size());
-  if (!said || flooded()) return throw_out();
+  if (!said || !fits(*said) || flooded()) return throw_out();
   hand_.heard(*said, now_ns());
   if (said->kind == Said::taken) {
-    taken_ = std::min(said->number, sent_);
+    taken_ = said->number;
     write_next();
   } else {
     host_.said(*this, *said);
@@ -78,6 +78,12 @@ void Session::ping() {
   if (pinging_) return;
   pinging_ = true;
   socket_.async_ping({}, [self = shared_from_this()](beast::error_code) { self->pinging_ = false; });
+}
+
+// Of a tool that there is, and of frames that have been sent.
+bool Session::fits(const Said& said) const {
+  if (said.kind == Said::taken) return said.number <= sent_;
+  return said.kind == Said::rest || said.tool < host_.tools();
 }
 
 bool Session::flooded() {

@@ -37,6 +37,7 @@ class SessionHost {
   virtual void opened(const std::shared_ptr<Session>& session) = 0;
   virtual void closed(Session& session) = 0;
   virtual void said(Session& session, const Said& said) = 0;
+  virtual int tools() const = 0;  ///< that a page may speak of
   virtual Counts& counts() = 0;
 };
 
@@ -61,6 +62,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void read();
   void heard(std::size_t bytes);
   void heard_control(beast::websocket::frame_type kind);
+  bool fits(const Said& said) const;
   bool flooded();
   void stand();
   void ping();

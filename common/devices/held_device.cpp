@@ -44,7 +44,7 @@ DeviceSample HeldDevice::read(double seconds) {
 
 ToolDofs HeldDevice::giving_way(ToolDofs led) {
   const Eigen::Vector3d tip = tip_pose(trocar_, led).translation();
-  const Eigen::Vector3d& off = coupling_.step(felt_, tip - led_to_, dt_);
+  const Eigen::Vector3d& off = coupling_.step(felt_, tip - led_to_.value_or(tip), dt_);
   led_to_ = tip;
   if (off.isZero(0)) return led;
   const ToolDofs at = dofs_for_tip(trocar_, tip + off, led.roll);

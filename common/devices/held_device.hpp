@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "common/devices/device.hpp"
 #include "common/devices/lease.hpp"
 #include "common/devices/virtual_coupling.hpp"
@@ -33,7 +35,7 @@ class HeldDevice : public Device {
   Trocar trocar_;
   HandMotion motion_;
   VirtualCoupling coupling_;
-  Eigen::Vector3d led_to_ = Eigen::Vector3d::Zero();  ///< [m] the tip, in the last step
+  std::optional<Eigen::Vector3d> led_to_;  ///< [m] the tip, in the last step
   Lease lease_;
   Latest<DeviceSample> newest_;
   std::unique_ptr<Device> until_taken_;  ///< null: it stands

@@ -228,7 +228,7 @@ def way(options):
         page.browser.execute_script(WATCH_THE_WAY)
         page.get("palpate.setDepth(25)")
         page.wait(f"{FORCE} > 0.15", 20)  # its script presses
-        here, there = page.get(TIP_SEEN), (0.25, 0.55)
+        here, there = page.get(TIP_SEEN), (0.28, 0.545)
         page.press(*there)
         page.let_go(*there)
         page.wait(f"{FORCE} === 0", 5)
@@ -591,6 +591,8 @@ def cut(options):
                 told = page.get(TOLD_OF_CUTS)
                 browser.execute_script(views.STAND)
                 pictures = []
+                marked = page.get("getComputedStyle(document.querySelector('#tasks i')).backgroundColor")
+                expect(marked == "rgb(115, 255, 140)", marked)
                 for topology in (topology_of(nodes.port), whole, topology_of(nodes.port)):
                     browser.execute_script(SHOW_FRAME_WITH, *topology)
                     pictures.append(views.look(page))
@@ -599,6 +601,9 @@ def cut(options):
                 print(f"{told} elements cut; the cut makes {of_cut:.2f} in the picture, the same twice {of_nothing:.2f}")
                 expect(of_nothing < 0.02, "the same is shown otherwise")
                 expect(of_cut > 0.2, "the cut is not in the picture")
+                greens = [views.greener(picture) for picture in (uncut, seen)]
+                print(f"what is marked has {greens[0]:.3f} of the picture, {greens[1]:.3f} once it is cut")
+                expect(min(greens) > 0.003, "what is to be cut off is not marked in the picture")
                 expect(not page.errors(), page.errors())
             finally:
                 browser.quit()
@@ -653,8 +658,17 @@ def hostile(options):
     expect(good.frames > 100, good.frames)
 
 
+def ended_after(page, message, most=100):
+    """A page that takes nothing is sent three frames and what is told beside them until its message is heard."""
+    for _ in range(most):
+        if page.read() is None:
+            return
+    raise AssertionError(f"{message} leaves the page open")
+
+
 def attack(port):
-    """Garbage, a megabyte, floods of messages and of pings, text, and another origin."""
+    """Garbage, a megabyte, floods of messages and of pings, text, and another origin; a tool that is none, reserved
+    bits, and frames taken that were never sent, of which each ends its page."""
     flood = b"\2\0\0\0\0\0\0\0"
     for messages, kind in (([os.urandom(32)], 2), ([bytes(1 << 20)], 2), (1000 * [flood], 2), (1000 * [b""], 9),
                            ([b"{}"], 1)):
@@ -662,6 +676,13 @@ def attack(port):
             page = Connection(port)
             for message in messages:
                 page.send(message, kind)
+        except OSError:
+            pass
+    for message in (b"\2\xff\0\0\0\0\0\0", b"\2\0\7\0\0\0\0\0", TAKEN + (4_000_000_000).to_bytes(4, "little")):
+        try:
+            page = Connection(port)
+            page.send(message)
+            ended_after(page, message)
         except OSError:
             pass
     try:

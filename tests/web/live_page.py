@@ -85,6 +85,16 @@ def expect(holds, said):
         raise AssertionError(said)
 
 
+def wait_for(browser, expression, seconds):
+    """Until the expression holds; its value. None where it does not in time."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if value := browser.execute_script(f"return {expression}"):
+            return value
+        time.sleep(0.03)
+    return None
+
+
 class Page:
     """One window of a browser with the live view in it."""
 
@@ -105,12 +115,8 @@ class Page:
 
     def wait(self, expression, seconds):
         """Until the expression holds; its value."""
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            value = self.get(expression)
-            if value:
-                return value
-            time.sleep(0.03)
+        if value := wait_for(self.browser, expression, seconds):
+            return value
         raise AssertionError(f"not within {seconds} s: {expression}; now {self.state()}")
 
     def state(self):

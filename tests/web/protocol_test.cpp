@@ -129,6 +129,17 @@ TEST(WebProtocol, WhatIsNoMessageIsRefused) {
   EXPECT_FALSE(decode(sample_bytes(1, {0, 0, 0, 100, 0, 0})));
   EXPECT_FALSE(decode(sample_bytes(1, {0, 0, 0, 0, 0, 2})));
   EXPECT_FALSE(decode(sample_bytes(1, {0, 0, 0, 0, nan, 0})));
+  std::string reserved = sample_bytes(1, {0, 0, 0, 0, 0, 0}), of_a_tool(8, '\0');
+  ASSERT_TRUE(decode(reserved));
+  reserved[3] = 1;
+  EXPECT_FALSE(decode(reserved));
+  for (const std::uint8_t kind : {Said::taken, Said::rest}) {
+    of_a_tool[0] = static_cast<char>(kind);
+    of_a_tool[1] = 0;
+    EXPECT_TRUE(decode(of_a_tool));
+    of_a_tool[1] = 1;
+    EXPECT_FALSE(decode(of_a_tool));
+  }
 }
 
 TEST(WebProtocol, AnyBytesAreReadOrRefused) {

@@ -172,15 +172,24 @@ TEST_F(WebServer, SixteenWatchAndASlowOneSlowsNobody) {
 }
 
 TEST_F(WebServer, WhatIsNoMessageThrowsThePageOut) {
-  for (const std::string& bad :
-       {std::string(5, 'x'), std::string(8, '\0'), std::string(33, '\1'), std::string(1 << 20, '\1'), std::string()}) {
+  using namespace std::string_literals;
+  const std::array bad_ones{"xxxxx"s,
+                            std::string(8, '\0'),
+                            std::string(33, '\1'),
+                            std::string(1 << 20, '\1'),
+                            ""s,
+                            "\2\xff\0\0\0\0\0\0"s,       // of tool 255, where there is one
+                            "\2\0\7\0\0\0\0\0"s,         // with reserved bits
+                            "\6\1\0\0\0\0\0\0"s,         // a rest, which is of no tool
+                            "\5\0\0\0\0\x28\x6b\xee"s};  // 4e9 frames taken, where none has been sent
+  for (const std::string& bad : bad_ones) {
     Client client(server_.port());
     ASSERT_TRUE(client.enter());
     client.read();
     client.write(bad);
     EXPECT_FALSE(client.read()) << bad.size() << " bytes";
   }
-  EXPECT_TRUE(within(10s, [&] { return server_.seen().malformed == 5 && server_.seen().viewers == 0; }));
+  EXPECT_TRUE(within(10s, [&] { return server_.seen().malformed == bad_ones.size() && server_.seen().viewers == 0; }));
   EXPECT_EQ(said_, 0);
 }
 
@@ -355,6 +364,7 @@ TEST_F(WebServer, ARequestThatComesByteByByteIsClosedAfterTenSeconds) {
   while (!drip() && Clock::now() < begin + 25s) std::this_thread::sleep_for(200ms);
   EXPECT_GT(Clock::now() - begin, 9s);
   EXPECT_LT(Clock::now() - begin, 20s);
+  EXPECT_EQ(server_.seen().refused, 1u);
 }
 
 TEST_F(WebServer, WithoutDescriptorsItWaitsForSome) {

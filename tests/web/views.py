@@ -1,7 +1,7 @@
 """What the live view's camera and its buttons do to the picture, in headless Chromium."""
 import math
 
-from live_page import Nodes, Page, expect, open_page, open_small_browser
+from live_page import Nodes, Page, expect, open_page, open_small_browser, wait_for
 
 GRID = (64, 48)  # squares of the picture that are looked at
 HIGHER_THAN_WIDE = {"width": 420, "height": 760, "deviceScaleFactor": 1, "mobile": False}
@@ -37,6 +37,11 @@ def look(page, grid=GRID):
 def apart(one, other):
     """Mean difference of two pictures, of 255."""
     return sum(abs(a - b) for a, b in zip(one, other)) / len(one)
+
+
+def greener(picture):
+    """Share of it that is more green than red, as no tissue is."""
+    return sum(g > r for r, g in zip(picture[::4], picture[1::4])) / (len(picture) / 4)
 
 
 def added(a, b, by=1.0):
@@ -96,19 +101,59 @@ def panned(eye, target, up, by, half_height):
     return added(eye, by), added(target, by)
 
 
+# A page whose pictures never come.
+NO_THREAD = "globalThis.Worker = class { addEventListener() {} postMessage() {} };"
+SAYS_FORCES = """globalThis.palpate && (() => { const { canvas } = palpate.curve, { data } =
+  canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+return /\\d m?N$/.test(document.querySelector('#forces b')?.textContent) && data.some((value) => value > 0); })()"""
+
+
+def preparing(browser, address):
+    """Before its first picture a page says so, and what is felt."""
+    stub = browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": NO_THREAD})
+    browser.get(address)
+    expect(wait_for(browser, SAYS_FORCES, 20), "no forces before the first picture")
+    note = browser.execute_script("return document.getElementById('note').textContent")
+    expect(note.startswith("preparing the picture"), note)
+    expect(browser.execute_script("return document.getElementById('legend').hidden"), "a scale without its colours")
+    browser.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", stub)
+
+
+# Size of the file that Save keeps, and its colours on the grid.
+SAVED = """const [columns, rows, done] = arguments;
+palpate.picture.file(palpate.camera).then(createImageBitmap).then((image) => {
+  const paper = new OffscreenCanvas(columns, rows), to = paper.getContext('2d');
+  to.drawImage(image, 0, 0, columns, rows);
+  done([image.width, image.height, ...to.getImageData(0, 0, columns, rows).data]);
+});"""
+
+
 def camera(options):
-    """Orbit, pan and zoom lead to the pictures of cameras computed here; the endoscope comes back to the scene's."""
+    """Orbit, pan and zoom lead to the pictures of cameras computed here; the endoscope comes back to the scene's, whose
+    width is in the picture; what is saved has the screen's pixels, however few are drawn."""
     with Nodes(options, "liver.toml") as nodes:
         browser = open_small_browser()
         try:
             browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", HIGHER_THAN_WIDE)
+            preparing(browser, nodes.address)
             page = Page(browser, nodes.address)
             page.wait("palpate.frame.tools[0].seen", 30)
+            page.wait("!document.getElementById('legend').hidden", 5)
+            note = page.get("document.getElementById('note').textContent")
+            expect("preparing" not in note, note)
             browser.execute_script(STAND)
             begin = look(page)
             now = page.get("palpate.camera.now")
             eye, target, up = now["eye"], now["target"], now["up"]
             half_height = page.get("palpate.picture.axes.halfHeight")
+            half_width, wanted = page.get("palpate.picture.axes.halfWidth"), 4 / 3 * math.tan(math.radians(25))
+            expect(abs(half_width / wanted - 1) < 1e-6, f"the scene is {wanted} wide at distance 1, and {half_width} seen")
+            width, height, *saved = browser.execute_async_script(SAVED, *GRID)
+            expect([width, height] == page.get("['clientWidth', 'clientHeight'].map((of) => palpate.picture.canvas[of])"),
+                   (width, height))
+            print(f"what is saved is {apart(saved, begin):.2f} from what is seen")
+            expect(apart(saved, begin) < 3, "another picture is saved than is seen")
+            expect(apart(look(page), begin) < 0.2, "the picture is another one after it was saved")
             back = added(eye, target, -1)
             for name, act, (to_eye, to_target) in (
                     ("orbit", lambda: drag(page, "right", (0.2, 0.1)), orbited(eye, target, up, (0.2, 0.1))),

@@ -41,10 +41,10 @@ export class ViewCamera {
     this.free = true;
   }
 
-  // For a picture that is higher than wide: the scene's width stays in it.
+  // In a picture that is narrower than the scene's all that the scene's has of width stays.
   fitted(width, height) {
-    const wide = Math.min(1, width / height / 1.15);
-    const half = Math.tan(0.5 * this.now.field_of_view * Math.PI / 180) / wide;
+    const narrow = Math.min(1, width / height / this.now.aspect);
+    const half = Math.tan(0.5 * this.now.field_of_view * Math.PI / 180) / narrow;
     return { ...this.now, field_of_view: 2 * Math.atan(half) * 180 / Math.PI };
   }
 }

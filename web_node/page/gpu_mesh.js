@@ -1,5 +1,6 @@
 // A triangle mesh in buffers of its own.
-const slots = { position: 3, normal: 3, rest: 3, scalar: 1, image: 2 };
+const slots = { position: 3, normal: 3, rest: 3, scalar: 1, image: 2, marked: 1 };
+const atRest = ['rest', 'image', 'marked'];
 
 export class GpuMesh {
   constructor(gl) {
@@ -14,7 +15,7 @@ export class GpuMesh {
     const { gl } = this, fresh = this.shape !== view.shape;
     gl.bindVertexArray(this.array);
     for (const [slot, name] of Object.keys(slots).entries())
-      if (view[name] && (fresh || (name !== 'rest' && name !== 'image'))) this.put(slot, name, view[name], fresh);
+      if (view[name] && (fresh || !atRest.includes(name))) this.put(slot, name, view[name], fresh);
     if (fresh) {
       this.shape = view.shape;
       this.count = view.triangles.length;

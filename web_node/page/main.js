@@ -59,7 +59,7 @@ class App {
   }
 
   failed(words) {
-    document.getElementById('note').textContent = words;
+    this.panel.failed(words);
   }
 
   lost() {
@@ -133,14 +133,14 @@ class App {
   // With every picture of the display.
   everyPicture() {
     requestAnimationFrame(() => this.everyPicture());
-    if (!this.shapes || !this.scenery) return;
+    if (!this.scenery) return;
     const now = performance.now(), seconds = Math.min((now - (this.displayed ?? now)) / 1e3, 0.1);
     this.displayed = now;
     const early = this.software && !this.firstDrawn;  // fewer pixels are there sooner
-    this.picture.show(this.camera, early ? 0.4 * this.scale : this.scale, this.look, Boolean(this.paused));
-    if (!this.frame) return;
-    this.gamepad.read(this.hand, this.picture.axes, seconds, () => this.hand.take(this.next));
-    if (!this.firstDrawn || now - (this.worded ?? -wordsApart) < wordsApart) return;
+    if (this.shapes)
+      this.picture.show(this.camera, early ? 0.4 * this.scale : this.scale, this.look, Boolean(this.paused));
+    if (this.frame) this.gamepad.read(this.hand, this.picture.axes, seconds, () => this.hand.take(this.next));
+    if (!this.next || now - (this.worded ?? -wordsApart) < wordsApart) return;
     this.worded = now;
     this.words();
   }
@@ -159,6 +159,7 @@ class App {
 
   made() {
     this.firstDrawn ??= performance.now();
+    this.panel.drawn();
   }
 
   // What stands beside the picture, and goes on while that is frozen; nobody reads faster.
@@ -280,9 +281,10 @@ class App {
   }
 
   async save() {
-    const link = document.createElement('a');
+    const file = await this.picture.file(this.camera), link = document.createElement('a');
+    if (!file) return;
     link.download = `palpate-${new Date().toISOString().replace(/[:.]/g, '-')}.png`;
-    link.href = URL.createObjectURL(await this.picture.file());
+    link.href = URL.createObjectURL(file);
     link.click();
     URL.revokeObjectURL(link.href);
   }

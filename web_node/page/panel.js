@@ -1,6 +1,7 @@
 // The words beside the picture.
 import { inks } from './curve.js';
 import { areShut } from './hand.js';
+import { markedColour } from './marked.js';
 import { forceMark, forceReading, forceUnit } from './units.js';
 import { size } from './vec.js';
 import { SILENT } from './wire.js';
@@ -16,21 +17,30 @@ function row(tag, ...children) {
   return made;
 }
 
+function dot(colour) {
+  const made = row('i');
+  made.style.background = colour;
+  return made;
+}
+
 const pedalIsDown = (state) => state.pedal > 0.5;
+const markedDot = () => dot(`rgb(${markedColour.map((c) => 255 * c).join()})`);
 const strongest = (task) => forceReading(task.force_max_n, Math.max(task.force_max_n, 0.001));
 
 export class Panel {
   said = [];  // by the nodes
+  preparing = true;  // until the first picture is there
+
+  constructor() {
+    this.note();
+  }
 
   setScenery(scenery) {
     this.scenery = scenery;
     byId('title').textContent = scenery.title;
     document.title = `${scenery.title} - palpate`;
-    byId('forces').replaceChildren(...scenery.tools.map((tool, i) => {
-      const ink = row('i');
-      ink.style.background = inks[i % inks.length];
-      return row('li', ink, tool.name, row('b'), row('small'));
-    }));
+    byId('forces').replaceChildren(...scenery.tools.map((tool, i) =>
+      row('li', dot(inks[i % inks.length]), tool.name, row('b'), row('small'))));
     document.querySelector('#tools select').replaceChildren(...scenery.tools.map((tool, i) => {
       const option = row('option', tool.name);
       option.value = i;
@@ -54,6 +64,7 @@ export class Panel {
 
   // `colours`: the pixels of the scale.
   scale(colours) {
+    byId('legend').hidden = false;
     const canvas = document.querySelector('#legend canvas');
     const image = new ImageData(new Uint8ClampedArray(colours), canvas.width, 1);
     canvas.getContext('2d').putImageData(image, 0, 0);
@@ -126,9 +137,22 @@ export class Panel {
     this.note();
   }
 
+  drawn() {
+    if (!this.preparing) return;
+    this.preparing = false;
+    this.note();
+  }
+
+  // The picture cannot be made.
+  failed(words) {
+    this.failure = words;
+    this.note();
+  }
+
   note() {
-    const own = this.late ? ['this page is too slow to hold the tool: it stands and its force fades'] : [];
-    byId('note').textContent = [...own, ...this.said].join('; ');
+    const picture = this.failure ?? (this.preparing && 'preparing the picture');
+    const late = this.late && 'this page is too slow to hold the tool: it stands and its force fades';
+    byId('note').textContent = [picture, late, ...this.said].filter(Boolean).join('; ');
   }
 
   handling({ seconds, path, strongest }) {
@@ -139,12 +163,12 @@ export class Panel {
   }
 
   tasks(tasks, resections) {
-    const cut = (name, elements, volume) => row('p', `${name}: ${(1e6 * volume).toFixed(2)} cm³ cut, ` +
+    const cut = (name, elements, volume) => row('p', ...name, `: ${(1e6 * volume).toFixed(2)} cm³ cut, ` +
       `${elements} element${elements === 1 ? '' : 's'}`);
     byId('tasks').replaceChildren(...resections.flatMap((of) => [
       row('h2', `Task: cut the marked part of ${of.body} off`),
-      cut('Inside the marked part', of.cut_inside, of.cut_inside_m3),
-      cut('Outside, which is to stay', of.cut_outside, of.cut_outside_m3),
+      cut([markedDot(), 'Inside the marked part'], of.cut_inside, of.cut_inside_m3),
+      cut(['Outside, which is to stay'], of.cut_outside, of.cut_outside_m3),
     ]), ...tasks.flatMap((task) => [
       row('h2', `Task: ${task.body}`),
       row('p', `${(1e3 * task.inserted_m).toFixed(0)} mm inserted, ${(1e3 * task.deepest_m).toFixed(0)} mm at the ` +

@@ -9,10 +9,12 @@ export class Picture {
     if (!canvas.transferControlToOffscreen) throw new Error('this browser is too old: it cannot draw beside its page');
     this.canvas = canvas;
     this.ahead = 0;  // frames that the thread has been given since it drew last
+    this.files = [];  // who waits for one
     this.thread = new Worker('render_thread.js', { type: 'module' });
     this.thread.addEventListener('message', ({ data }) => {
       if (data.drawn) this.ahead = 0;
-      for (const [what, of] of Object.entries(data)) on[what](of);
+      if ('file' in data) this.files.shift()(data.file);
+      else for (const [what, of] of Object.entries(data)) on[what](of);
     });
     this.thread.addEventListener('error', (event) => on.failed(event.message ?? 'the page has no thread to draw on'));
     const surface = canvas.transferControlToOffscreen();
@@ -32,19 +34,23 @@ export class Picture {
 
   // What is seen from now on. `scale`: pixels of the picture in one of the page's; `look`: as Renderer's.
   show(camera, scale, look, paused) {
-    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight]
-      .map((length) => Math.max(Math.round(length * scale), 16));
-    this.axes = axesOf(camera.fitted(width, height), width, height);
-    const view = { width, height, axes: this.axes, look, paused }, said = JSON.stringify(view);
+    const part = this.part(camera, scale);
+    this.axes = part.axes;
+    const view = { ...part, look, paused }, said = JSON.stringify(view);
     if (said === this.said) return;
     this.said = said;
     this.thread.postMessage(view);
   }
 
-  // As a PNG file.
-  async file() {
-    const image = await createImageBitmap(this.canvas), paper = new OffscreenCanvas(image.width, image.height);
-    paper.getContext('2d').drawImage(image, 0, 0);
-    return paper.convertToBlob({ type: 'image/png' });
+  part(camera, scale) {
+    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight]
+      .map((length) => Math.max(Math.round(length * scale), 16));
+    return { width, height, axes: axesOf(camera.fitted(width, height), width, height) };
+  }
+
+  // The picture with all of the screen's pixels, as a PNG file; undefined before the first one.
+  file(camera) {
+    this.thread.postMessage({ file: this.part(camera, devicePixelRatio) });
+    return new Promise((done) => { this.files.push(done); });
   }
 }

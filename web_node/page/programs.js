@@ -1,3 +1,5 @@
+import { markedColour } from './marked.js';
+
 // The project's shaders in the browser's dialect. They are written for GLSL 4.5; here uniforms have no places of their
 // own, and numbers need a precision.
 const head = '#version 300 es\nprecision highp float;\nprecision highp int;\n';
@@ -24,6 +26,22 @@ void main() {
   normal *= sign(dot(normal, scene.eye.xyz - place));
   vec3 to_light = normalize(normalize(scene.up.xyz) - 0.7 * normalize(scene.right.xyz) - 0.8 * scene.forward.xyz);
   pixel = vec4((0.35 + 0.65 * max(dot(normal, to_light), 0.0)) * scale_colour(share), 1.0);
+}`;
+// A veil over what is to be cut off, with a line about it.
+const markedVertex = `layout(location = 0) in vec3 position;
+layout(location = 5) in float marked;
+out float inside;
+void main() {
+  inside = marked;
+  gl_Position = scene.view_projection * vec4(position, 1.0);
+}`;
+const markedFragment = `in float inside;
+out vec4 pixel;
+void main() {
+  float from_border = abs(inside) * gl_FragCoord.w / scene.right.w;  // [pixel], of a surface that faces the camera
+  float wide = max(1.0, scene.viewport.y / 400.0);
+  float line = 1.0 - smoothstep(wide, wide + 1.0, from_border);
+  pixel = vec4(${markedColour.map((c) => c.toFixed(2)).join()}, max(0.9 * line, inside > 0.0 ? 0.2 : 0.0));
 }`;
 const coverVertex = `void main() {
   gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
@@ -67,6 +85,7 @@ export class Programs {
     const start = head + (variant && `#define ${variant}\n`) + `#define TOOLS ${tools}\n` + s.scene;
     const lit = start + s.noise + s.light;
     if (name === 'arrow') return [start + arrowVertex, start + s.colours + arrowFragment];
+    if (name === 'marked') return [start + markedVertex, start + markedFragment];
     if (name === 'cover') return [head + coverVertex, head + 'precision highp sampler2D;\n' + coverFragment];
     if (name === 'legend') return [head + coverVertex, head + s.colours + legendFragment];
     if (name === 'cavity') return [start + s.cavity_vert, lit + s.cavity_frag];

@@ -3,7 +3,7 @@ import { Renderer } from './renderer.js';
 import { Shapes } from './shapes.js';
 import * as wire from './wire.js';
 
-const picturesApart = 12, softwareFineness = 0.25;  // [ms]
+const picturesApart = 12, softwareFineness = 0.25, mostFine = 4096;  // [ms]; [pixel]
 
 class RenderThread {
   constructor({ canvas, sources }) {
@@ -15,6 +15,7 @@ class RenderThread {
   }
 
   take(data) {
+    if (data.file) return void this.file(data.file);
     if (data instanceof ArrayBuffer) this.binary(data);
     else this.view = data;
     this.changed = true;
@@ -55,6 +56,19 @@ class RenderThread {
     this.making = true;
     postMessage({ drawn: { number: this.frame.number, seconds: since / 1e3, most: this.shapes.most } });
     this.drawIn(4);  // until it is complete
+  }
+
+  // The picture once more, by itself: with smooth edges whatever the machine, since it is made finer than it is kept.
+  async file({ width, height, axes }) {
+    if (!this.frame) return postMessage({ file: undefined });
+    if (this.renderer.busy()) return setTimeout(() => this.file({ width, height, axes }), 4);
+    const finer = Math.max(width, height) > mostFine ? 1 : 2, paper = new OffscreenCanvas(width, height);
+    this.renderer.resize(finer * width, finer * height);
+    this.renderer.draw(axes, this.shapes.bodies, this.frame.tools, this.view.look);
+    paper.getContext('2d').drawImage(this.renderer.canvas, 0, 0, width, height);
+    this.changed = true;  // the next one has its own size again
+    this.drawIn(0);
+    postMessage({ file: await paper.convertToBlob({ type: 'image/png' }) });
   }
 
   tellMade() {

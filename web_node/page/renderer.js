@@ -20,6 +20,7 @@ export class Renderer {
     this.software = drawsBySoftware();
     const gl = canvas.getContext('webgl2', { alpha: false, antialias: !this.software });
     if (!gl) throw new Error('this browser has no WebGL 2');
+    this.canvas = canvas;
     this.gl = gl;
     this.programs = new Programs(gl, sources);
     for (const name of ['cavity', 'cover', 'metal', 'legend', 'arrow']) this.programs.prepare(name);
@@ -42,8 +43,9 @@ export class Renderer {
     this.backdrop.set(scenery.backdrop);
     for (const { finish } of scenery.backdrop) this.programs.prepare(finish);
     const tools = Math.min(scenery.tools.length, 8);
-    for (const { finish, visual } of scenery.bodies) {
+    for (const { finish, visual, marked } of scenery.bodies) {
       this.programs.prepare(finish, tools);
+      if (marked) this.programs.prepare('marked');
       for (const part of visual?.parts ?? [])
         this.programs.prepare(part.finish, tools, part.textured ? 'TEXTURED' : '');
     }
@@ -95,6 +97,7 @@ export class Renderer {
     const clear = ({ view }) => look.through && (view.finish === 'duct' || view.finish === 'mucosa');
     const { gl } = this;
     for (const one of views) if (!clear(one)) this.drawSoft(one, look, tools);
+    for (const one of views) if (one.view.marked) this.drawMarked(one);
     if (!look.through) return;
     gl.enable(gl.BLEND);
     gl.blendColor(0, 0, 0, 0.35);
@@ -117,6 +120,21 @@ export class Renderer {
       gl.uniform1i(program.image, 0);
     }
     this.meshes.get(key).upload(view).draw();
+  }
+
+  // Over the tissue that has just been drawn.
+  drawMarked({ key }) {
+    const { gl } = this;
+    gl.useProgram(this.programs.get('marked').program);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(-1, -1);
+    gl.depthMask(false);
+    this.meshes.get(key).draw();
+    gl.depthMask(true);
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    gl.disable(gl.BLEND);
   }
 
   drawInstrument({ tool, index, shape, pose }) {

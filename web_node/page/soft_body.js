@@ -1,4 +1,5 @@
 // A body: coarse positions from the wire become what is drawn.
+import { depthsIn } from './marked.js';
 import { Refinement, vertexNormals } from './refine.js';
 import { VisualShape } from './visual_shape.js';
 import { ThickWall } from './wall.js';
@@ -10,7 +11,7 @@ export class SoftBody {
     this.spec = spec;
     this.mostTriangles = mostTriangles;
     this.shape = 0;
-    if (spec.visual) this.visual = new VisualShape(spec.visual, spec.rest);
+    if (spec.visual) this.visual = new VisualShape(spec.visual, spec.rest, spec.marked);
     this.setTriangles(triangles);
   }
 
@@ -29,6 +30,7 @@ export class SoftBody {
     this.refinement.apply(this.rest, restNormal);
     this.normal.set(restNormal);
     this.position.set(this.rest);
+    if (spec.marked) this.marked = depthsIn(spec.marked, this.rest);
     this.texture = this.rest;
     if (spec.texture) {
       this.texture = floats();
@@ -78,7 +80,7 @@ export class SoftBody {
     const { spec, wall } = this;
     const own = {
       finish: spec.finish, colour: spec.colour, shape: this.shape, position: this.position, normal: this.normal,
-      rest: this.texture, scalar: this.displacement, triangles: this.refinement.triangles,
+      rest: this.texture, scalar: this.displacement, marked: this.marked, triangles: this.refinement.triangles,
     };
     if (this.visual) return [own, ...this.visual.views()];
     if (!wall) return [own];

@@ -1,11 +1,14 @@
+import { depthsIn } from './marked.js';
+
 // As common/mesh/visual_shape.hpp: a visual surface that follows the nodes of its body. Matrices are nine numbers by
 // columns.
 const leastVolume = 0.05;
 
 export class VisualShape {
-  // `spec`: of the scenery; `rest` [m]: of the body's nodes.
-  constructor(spec, rest) {
+  // `spec`: of the scenery; `rest` [m]: of the body's nodes; `marked`: the box of what is to be cut off, if there is one.
+  constructor(spec, rest, marked) {
     this.spec = spec;
+    if (marked) this.marked = depthsIn(marked, spec.position);
     this.rest = rest;
     this.cells = spec.cells.length / 4;
     this.alive = new Uint8Array(this.cells).fill(1);
@@ -169,7 +172,8 @@ export class VisualShape {
       const own = (all, width) => all.subarray(width * first, width * (first + count));
       const view = {
         finish, colour, shape: this.shape, position: own(this.position, 3), normal: own(this.normal, 3),
-        rest: own(spec.position, 3), scalar: own(this.displacement, 1), triangles: this.triangles[p],
+        rest: own(spec.position, 3), scalar: own(this.displacement, 1),
+        marked: this.marked && own(this.marked, 1), triangles: this.triangles[p],
       };
       return textured ? { ...view, image: own(spec.image, 2), texture: spec.texture } : view;
     }).filter((view) => view.triangles.length > 0);
