@@ -17,9 +17,9 @@
 #include <optional>
 #include <stdexcept>
 #include <thread>
-#include <utility>
 
 #include "common/files/atomic_file.hpp"
+#include "common/files/file_lock.hpp"
 #include "common/realtime/clock.hpp"
 
 namespace palpate {
@@ -37,31 +37,6 @@ std::string reason_for(int error) {
   return error != 0 ? std::strerror(error) : "write failed";
 }
 
-/// A file or folder that nobody else has at the same time; of what cannot be opened, nothing.
-class Lock {
- public:
-  Lock() = default;
-  /// Waits for it, or throws std::runtime_error if another one has it.
-  static Lock waiting(const std::filesystem::path& path) { return Lock(path, LOCK_EX); }
-  static Lock at_once(const std::filesystem::path& path) { return Lock(path, LOCK_EX | LOCK_NB); }
-  Lock(Lock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  Lock& operator=(Lock&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
-  }
-  ~Lock() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-
- private:
-  Lock(const std::filesystem::path& path, int how) : descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-    if (descriptor_ < 0 || flock(descriptor_, how) == 0 || errno != EWOULDBLOCK) return;
-    close(descriptor_);
-    throw std::runtime_error(path.string() + ": another program is writing it: give another name");
-  }
-  int descriptor_ = -1;
-};
-
 std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : ".";
 }
@@ -76,22 +51,23 @@ struct Event {
 
 class LogWriter::Impl {
  public:
-  Impl(const std::filesystem::path& file, std::size_t queue_bytes, const LogHeader* header, WhenFull when_full)
+  Impl(const std::filesystem::path& file, std::size_t queue_bytes, const LogHeader* header, WhenFull when_full,
+       Naming naming)
       : queue_limit_(queue_bytes),
         enough_(std::min(queue_bytes / 2, kFlushBytes)),
         when_full_(when_full),
         wall_offset_(wall_ns() - now_ns()) {
-    Lock beginning;
+    FileLock beginning;
     if (header && (!std::filesystem::exists(file) || std::filesystem::is_regular_file(file))) {
-      beginning = Lock::waiting(folder_of(file));  // of two that begin at once, the second finds the first
-      if (std::filesystem::exists(file)) former_ = Lock::at_once(file);
+      beginning = FileLock::wait_for(folder_of(file));  // of two that begin at once, the second finds the first
+      if (std::filesystem::exists(file)) former_ = FileLock::at_once(file);
       unnamed_.emplace(file);
     }
     log_ = lcm_eventlog_create(unnamed_ ? unnamed_->handle().c_str() : file.c_str(), "w");
     if (!log_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
     if (unnamed_) flock(fileno(log_->f), LOCK_EX);
     std::setvbuf(log_->f, nullptr, _IOFBF, kFlushBytes);
-    if (header) begin(*header, file);
+    if (header) begin(*header, file, naming);
     thread_ = std::thread([this] { run(); });
   }
 
@@ -144,7 +120,7 @@ class LogWriter::Impl {
   }
 
  private:
-  void begin(const LogHeader& header, const std::filesystem::path& file) try {
+  void begin(const LogHeader& header, const std::filesystem::path& file, Naming naming) try {
     Bytes payload;
     encode(header, payload);
     append({kHeaderChannel, header.start_monotonic_ns,
@@ -153,7 +129,7 @@ class LogWriter::Impl {
     if (unnamed_ && status_.lost > 0)
       throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), status_.error));
     std::error_code error;
-    if (std::filesystem::file_size(file, error) == 0 || error) give_name();
+    if (naming == Naming::at_once || std::filesystem::file_size(file, error) == 0 || error) give_name();
   } catch (...) {
     lcm_eventlog_destroy(log_);
     throw;
@@ -253,7 +229,7 @@ class LogWriter::Impl {
     status_.error = why;
   }
 
-  Lock former_;                        ///< the file of that name, which stays until this one has it
+  FileLock former_;                    ///< the file of that name, which stays until this one has it
   std::optional<AtomicFile> unnamed_;  ///< until it has its name
   lcm_eventlog_t* log_ = nullptr;
   std::size_t queue_limit_, enough_;  ///< [bytes] that may wait, and at which the thread is woken
@@ -277,9 +253,9 @@ class LogWriter::Impl {
 };
 
 LogWriter::LogWriter(const std::filesystem::path& file, std::size_t queue_bytes)
-    : impl_(std::make_unique<Impl>(file, queue_bytes, nullptr, WhenFull::lose)) {}
-LogWriter::LogWriter(const std::filesystem::path& file, const LogHeader& header, WhenFull when_full)
-    : impl_(std::make_unique<Impl>(file, kQueueLimit, &header, when_full)) {}
+    : impl_(std::make_unique<Impl>(file, queue_bytes, nullptr, WhenFull::lose, Naming::at_once)) {}
+LogWriter::LogWriter(const std::filesystem::path& file, const LogHeader& header, WhenFull when_full, Naming naming)
+    : impl_(std::make_unique<Impl>(file, kQueueLimit, &header, when_full, naming)) {}
 LogWriter::~LogWriter() = default;
 
 void LogWriter::write_payload(const std::string& channel, std::int64_t receive_ns, const Bytes& payload) {

@@ -19,6 +19,12 @@ struct LogStatus {
 /// and so are all that follow until there is room; or it waits for as long as it takes.
 enum class WhenFull { lose, wait };
 
+/// When a log takes the place of a file of its name that holds something.
+enum class Naming {
+  at_once,
+  later  ///< at give_name(), until which that stays as it is
+};
+
 /// Writes an LCM event log from a thread of its own: write() waits for the disk only where as much as may wait does.
 /// When the disk is full or stands, events are counted as lost and writing is tried again each second; what was written
 /// stays readable.
@@ -29,8 +35,9 @@ class LogWriter {
   /// Creates the file. Throws std::runtime_error if that fails.
   explicit LogWriter(const std::filesystem::path& file, std::size_t queue_bytes = kQueueLimit);
   /// The same with the header in it before the file has its name: at no moment is there a file that cannot be read.
-  /// Where one of that name holds something, it stays as it is until give_name(). Throws also if another writer has it.
-  LogWriter(const std::filesystem::path& file, const LogHeader& header, WhenFull when_full = WhenFull::lose);
+  /// Throws also if another writer has it.
+  LogWriter(const std::filesystem::path& file, const LogHeader& header, WhenFull when_full = WhenFull::lose,
+            Naming naming = Naming::at_once);
   ~LogWriter();  ///< finish() without a footer if it was not called
 
   /// Appends an event; receive_ns is CLOCK_MONOTONIC. Call from one thread.
@@ -43,7 +50,7 @@ class LogWriter {
     write_payload(channel, receive_ns, payload);
   }
 
-  /// Takes the place of a file that held something. Throws std::runtime_error if that fails.
+  /// Takes its name, where it has not. Throws std::runtime_error if that fails.
   void give_name();
   bool has_name() const;  ///< without it nothing stays of the log
 

@@ -61,7 +61,7 @@ class Recorder::Impl {
       : bus_(bus),
         files_(settings.files),
         thinning_of_(settings.thinning),
-        log_(settings.file, make_header(settings)),
+        log_(settings.file, make_header(settings), WhenFull::lose, Naming::later),
         tracks_(make_tracks(bus, topics::all)),
         status_writer_(bus.writer(topics::node_status)) {
     status_.node = fmt::format("recorder {}@{}", getpid(), host_name());

@@ -332,7 +332,7 @@ TEST_F(Log, IsWrittenByOneAlone) {
     const LogWriter first(file_, header());
     EXPECT_EQ(refusal(), file_.string() + ": another program is writing it: give another name");
   }
-  LogWriter second(file_, header());
+  LogWriter second(file_, header(), WhenFull::lose, Naming::later);
   EXPECT_FALSE(second.has_name()) << "what is there stays";
   EXPECT_NE(refusal(), "accepted") << "and waits for the second alone";
   second.give_name();

@@ -54,7 +54,6 @@ StepLog::StepLog(const std::filesystem::path& file, sim::Simulator& simulator)
       keyframes_(bus_->writer(topics::deform_keyframe)),
       surfaces_(bus_->writer(topics::surface_state)),
       change_seq_(simulator.bodies(), 0) {
-  log_.give_name();
   const Scene& scene = simulator.scene();
   bus_->writer(topics::scene)
       ->write(

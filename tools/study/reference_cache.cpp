@@ -1,16 +1,12 @@
 #include "tools/study/reference_cache.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <cstdint>
 #include <fstream>
 #include <optional>
-#include <utility>
 
 #include "common/describe/digest.hpp"
 #include "common/files/atomic_file.hpp"
+#include "common/files/file_lock.hpp"
 
 namespace palpate::study {
 namespace {
@@ -46,26 +42,6 @@ void keep_numbers(const std::filesystem::path& file, const std::vector<double>& 
   // They are computed again next time.
 }
 
-/// Held while a reference is computed, so that other processes wait for it in place of computing it too. Where no file
-/// can be locked, they do.
-class Turn {
- public:
-  explicit Turn(std::filesystem::path file)
-      : file_(std::move(file)), descriptor_(open(file_.c_str(), O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_RDWR, 0666)) {
-    if (descriptor_ >= 0) flock(descriptor_, LOCK_EX);
-  }
-  ~Turn() {
-    if (descriptor_ < 0) return;
-    unlink(file_.c_str());
-    close(descriptor_);
-  }
-  Turn(const Turn&) = delete;
-
- private:
-  std::filesystem::path file_;
-  int descriptor_;
-};
-
 }  // namespace
 
 std::vector<double> ReferenceCache::get(const std::string& key,
@@ -75,10 +51,13 @@ std::vector<double> ReferenceCache::get(const std::string& key,
   if (auto found = read_numbers(file)) return *std::move(found);
   std::error_code unwritable;
   std::filesystem::create_directories(folder_, unwritable);
-  const Turn turn(folder_ / (digest(key) + ".turn"));
+  // Other processes wait for it in place of computing it too.
+  const auto turn_file = folder_ / (digest(key) + ".turn");
+  const FileLock turn = FileLock::wait_for(turn_file);
   if (auto found = read_numbers(file)) return *std::move(found);
   std::vector<double> values = compute();
   keep_numbers(file, values);
+  std::filesystem::remove(turn_file, unwritable);
   return values;
 }
 
