@@ -16,7 +16,7 @@ def section(palpate, seconds):
     return ["## Beside the vendor's ddsperf", "",
             f"    palpate {' '.join(command)}", "",
             f"{TURNS} turns of {seconds} s; in each the bus, bare DDS by listener and `ddsperf ping` with `ddsperf pong` have the machine to themselves, one after the other,",
-            f"{figures['rate_hz']:.0f} messages a second of as many bytes. p50 of a turn; `ddsperf` prints half a round trip, here it is doubled.", "",
+            f"{figures['rate_hz']:.0f} messages a second, each as long. p50 of a turn; `ddsperf` prints half a round trip, here it is doubled.", "",
             "| there and back [µs] | median of the turns | least | most |", "| --- | --- | --- | --- |",
             *(f"| {name} | {statistics.median(values):.0f} | {min(values):.0f} | {max(values):.0f} |" for name, values in ways), "",
             f"The bus takes **{statistics.median(ratios):.2f} times** as long as `ddsperf` (median of the turns' ratios, {min(ratios):.2f} to {max(ratios):.2f})."]
