@@ -56,6 +56,7 @@ SHORTENED = [
     ("*palpate run * --web*", "--seconds 1"),
     ("palpate drive scenes/liver.toml * --log *", "--seconds 3"),
     ("palpate latency*", "--seconds 1"),
+    ("palpate latency * --seconds *", ""),
     ("palpate record *", "--seconds 2"),
     ("palpate top*", "--once"),
     ("palpate top* --once*", ""),
