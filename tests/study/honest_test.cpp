@@ -56,17 +56,9 @@ TEST(Errors, APressOrAMomentWithoutANumberIsRefusedAndNotLeftOut) {
   EXPECT_THROW(add_course({}, {{1, 2}, {3, kNoNumber}}, {{1, 2}, {1, 4}}, 0.5, result), std::runtime_error);
 }
 
-Scene catheter_scene(const Folder& folder) {
-  write_trajectory(folder.at);
-  return write_scene(folder.at,
-                     "[[body]]\nname = \"catheter\"\nmodel = \"catheter\"\nyoung = 5e6\ndensity = "
-                     "1100\n[body.catheter]\ntail = [0, 0, 0]\ntip = [0.1, 0, 0]\nparticles = 10\n",
-                     kProbe);
-}
-
 TEST(Study, AnInterruptedOneGoesOnWithoutLosingARowAndSaysWhichMachineItsFiguresAreOf) {
   const Folder folder;
-  const Scene scene = catheter_scene(folder);
+  const Scene scene = catheter_scene(folder.at, 10);
   const std::size_t rows = run_study(scene, folder.at / "out", {.quick = true}).rows.size();
   const std::string table = text_of(folder.at / "out/study.csv"), courses = text_of(folder.at / "out/course.csv");
   EXPECT_NE(text_of(folder.at / "out/machine.txt").find("cores"), std::string::npos);
@@ -87,7 +79,7 @@ TEST(Study, AnInterruptedOneGoesOnWithoutLosingARowAndSaysWhichMachineItsFigures
 
 TEST(Study, FilesThatAreNotItsOwnStay) {
   const Folder folder;
-  const Scene scene = catheter_scene(folder);
+  const Scene scene = catheter_scene(folder.at, 10);
   std::filesystem::create_directories(folder.at / "a");
   std::ofstream(folder.at / "a/study.csv") << "my,own,figures\n";
   EXPECT_THROW(run_study(scene, folder.at / "a", {.quick = true}), std::runtime_error);

@@ -24,11 +24,7 @@ TEST(Installation, AStudyAndATableOfStabilityMakeTheirPagesByTheScriptsBesideThe
     std::ofstream(script)
         << "import pathlib, sys\n(pathlib.Path(sys.argv[1]) / 'index.html').write_text('of the installation')\n";
   }
-  write_trajectory(folder.at);
-  const Scene scene = write_scene(folder.at,
-                                  "[[body]]\nname = \"catheter\"\nmodel = \"catheter\"\nyoung = 5e6\ndensity = "
-                                  "1100\n[body.catheter]\ntail = [0, 0, 0]\ntip = [0.1, 0, 0]\nparticles = 10\n",
-                                  kProbe);
+  const Scene scene = catheter_scene(folder.at, 10);
   const std::string program = prefix + "/bin/palpate", study = (folder.at / "study").string(),
                     stability = (folder.at / "stability").string();
   ASSERT_EQ(std::system((program + " study " + scene.file.string() + " --quick -o " + study + " > /dev/null").c_str()),

@@ -42,11 +42,7 @@ void expect_same_errors(const Result& found, const Result& expected) {
 
 TEST(StudyJobs, GiveWhatOneProcessGivesBesideOneAnotherOrAsTasks) {
   const Folder folder;
-  write_trajectory(folder.at);
-  const Scene scene = write_scene(folder.at,
-                                  "[[body]]\nname = \"catheter\"\nmodel = \"catheter\"\nyoung = 5e6\ndensity = "
-                                  "1100\n[body.catheter]\ntail = [0, 0, 0]\ntip = [0.1, 0, 0]\nparticles = 10\n",
-                                  kProbe);
+  const Scene scene = catheter_scene(folder.at, 10);
   run_study(scene, folder.at / "alone", quick());
   const Result alone = kept(scene, folder.at / "alone");  // files hold six digits
   const std::string file = scene.file.string(), beside = (folder.at / "beside").string(),

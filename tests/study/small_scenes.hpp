@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string>
 
 #include "common/mesh/generators.hpp"
 #include "common/mesh/mesh_file.hpp"
@@ -63,6 +64,16 @@ inline Scene block_scene(const std::filesystem::path& folder, const std::string&
 
 inline OneMesh on_one(const Scene& scene) {
   return *on_one_mesh(scene.bodies[0]);
+}
+
+/// A catheter of 100 mm along x.
+inline Scene catheter_scene(const std::filesystem::path& folder, int particles) {
+  write_trajectory(folder);
+  return write_scene(folder,
+                     "[[body]]\nname = \"catheter\"\nmodel = \"catheter\"\nyoung = 5e6\ndensity = 1100\n"
+                     "[body.catheter]\ntail = [0, 0, 0]\ntip = [0.1, 0, 0]\nparticles = " +
+                         std::to_string(particles) + "\n",
+                     kProbe);
 }
 
 /// References that the tests of a process keep for one another: a body is solved once.

@@ -359,11 +359,7 @@ modes = 20
 
 TEST(Study, ACathetersErrorFallsWithItsParticles) {
   const Folder folder;
-  write_trajectory(folder.at);
-  const Scene scene = write_scene(folder.at,
-                                  "[[body]]\nname = \"catheter\"\nmodel = \"catheter\"\nyoung = 5e6\ndensity = "
-                                  "1100\n[body.catheter]\ntail = [0, 0, 0]\ntip = [0.1, 0, 0]\nparticles = 40\n",
-                                  kProbe);
+  const Scene scene = catheter_scene(folder.at, 40);
   const Result result = run_study(scene, folder.at / "out", quick());
   const Row *coarse = find(result, "catheter", "particles", "10", "finest_chain"),
             *own = find(result, "catheter", "scene", "", "finest_chain"),

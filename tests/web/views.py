@@ -110,13 +110,13 @@ return /\\d m?N$/.test(document.querySelector('#forces b')?.textContent) && data
 
 def preparing(browser, address):
     """Before its first picture a page says so, and what is felt."""
-    stub = browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": NO_THREAD})
+    on_load = browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": NO_THREAD})
     browser.get(address)
     expect(wait_for(browser, SAYS_FORCES, 20), "no forces before the first picture")
     note = browser.execute_script("return document.getElementById('note').textContent")
     expect(note.startswith("preparing the picture"), note)
     expect(browser.execute_script("return document.getElementById('legend').hidden"), "a scale without its colours")
-    browser.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", stub)
+    browser.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", on_load)
 
 
 # Size of the file that Save keeps, and its colours on the grid.
