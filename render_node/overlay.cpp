@@ -85,24 +85,32 @@ class Sheet {
   std::vector<FlatVertex> vertices_;
 };
 
-void add_overlay(Sheet& sheet, const Overlay& overlay, const FontAtlas& font) {
+void add_gauge(Sheet& sheet, const Gauge& gauge, float x, float y, float wide, const FontAtlas& font) {
+  const float line = font.line_height(), share = std::clamp<float>(gauge.value / gauge.full, 0, 1);
+  const std::string end = fmt::format("{:g} {}", gauge.full, gauge.unit);
+  const float bar = std::ceil(wide) - sheet.width_of(end) - 0.6f * line;
+  const float top = std::round(y + 0.35f * line), height = std::round(0.35f * line);
+  sheet.area(x, top, bar, height, kGroovePaint);
+  sheet.area(x, top, std::round(share * bar), height, share < 0.9f ? kGaugePaint : kFullPaint);
+  sheet.text(x + bar + 0.6f * line, std::round(y + font.ascent()), end, kTextPaint);
+}
+
+void add_overlay(Sheet& sheet, const Overlay& overlay, const FontAtlas& font, int width, int height) {
   const float line = font.line_height(), margin = 0.6f * line;
   float widest = overlay.gauge ? 9 * line : 0;
   for (const std::string& words : overlay.lines) widest = std::max(widest, sheet.width_of(words));
-  const float bar = overlay.gauge ? 0.9f * line : 0;
-  const float lines = static_cast<float>(overlay.lines.size()) * line;
-  if (lines + bar == 0) return;
-  sheet.area(margin, margin, std::ceil(widest) + 2 * margin, lines + bar + margin, kPanelPaint);
-  float y = 1.5f * margin + font.ascent();
+  const std::size_t lines = overlay.lines.size() + (overlay.gauge ? 1 : 0);
+  if (lines == 0) return;
+  const float wide = std::ceil(widest) + 2 * margin, tall = static_cast<float>(lines) * line + margin;
+  const float left = is_right(overlay.corner) ? width - margin - wide : margin;
+  const float top = is_lower(overlay.corner) ? height - margin - tall : margin;
+  sheet.area(left, top, wide, tall, kPanelPaint);
+  float y = top + 0.5f * margin;
   for (const std::string& words : overlay.lines) {
-    sheet.text(2 * margin, std::round(y), words, kTextPaint);
+    sheet.text(left + margin, std::round(y + font.ascent()), words, kTextPaint);
     y += line;
   }
-  if (!overlay.gauge) return;
-  const float share = std::clamp<float>(overlay.gauge->value / overlay.gauge->full, 0, 1);
-  const float top = std::round(1.5f * margin + lines + 0.25f * line), height = std::round(0.35f * line);
-  sheet.area(2 * margin, top, std::ceil(widest), height, kGroovePaint);
-  sheet.area(2 * margin, top, std::round(share * widest), height, share < 0.9f ? kGaugePaint : kFullPaint);
+  if (overlay.gauge) add_gauge(sheet, *overlay.gauge, left + margin, y, widest, font);
 }
 
 void add_legend(Sheet& sheet, const Legend& legend, const FontAtlas& font, int width, int height) {
@@ -138,7 +146,7 @@ double legend_step(double max, int most) {
 
 std::vector<FlatVertex> lay_out(const Frame& frame, const FontAtlas& font, int width, int height) {
   Sheet sheet(font);
-  if (frame.overlay) add_overlay(sheet, *frame.overlay, font);
+  if (frame.overlay) add_overlay(sheet, *frame.overlay, font, width, height);
   if (frame.legend) add_legend(sheet, *frame.legend, font, width, height);
   return sheet.take();
 }

@@ -82,7 +82,7 @@ void Show::tell(const std::vector<std::string>& above) {
     full = i == 0 ? scene_.tools[i].max_force : std::max(full, scene_.tools[i].max_force);
   }
   std::optional<Gauge> gauge;
-  if (!latest_force_.empty()) gauge = Gauge{strongest, full};
+  if (!latest_force_.empty()) gauge = Gauge{strongest, full, "N"};
   stage_.set_overlay(std::move(lines), gauge);
   peak_force_ = std::max(peak_force_, strongest);
   if (strongest > 1.01 * best_force_) {

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "common/mesh/near_origin.hpp"
 #include "common/mesh/normals.hpp"
 #include "common/view/backdrop.hpp"
+#include "render_node/clear_corner.hpp"
 
 namespace palpate {
 namespace {
@@ -178,12 +180,21 @@ bool Stage::set_tool(const ToolState& s) {
   if (s.tool >= tools_.size()) return false;
   Instrument& tool = tools_[s.tool];
   place(tool.view, tool.trocar, s);
-  tool.seen = true;
+  if (!std::exchange(tool.seen, true)) put_overlay_aside();
   return true;
 }
 
+// Where it stands from then on: it does not jump.
+void Stage::put_overlay_aside() {
+  std::vector<InstrumentView> seen;
+  for (const Instrument& tool : tools_)
+    if (tool.seen) seen.push_back(tool.view);
+  overlay_.corner = clear_corner(render_.camera, seen, static_cast<double>(render_.width) / render_.height);
+}
+
 void Stage::set_overlay(std::vector<std::string> lines, std::optional<Gauge> gauge) {
-  overlay_ = {std::move(lines), gauge};
+  overlay_.lines = std::move(lines);
+  overlay_.gauge = std::move(gauge);
 }
 
 void Stage::add_views(const Soft& body, int id, int inner_id, Frame& frame) {

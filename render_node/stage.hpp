@@ -42,6 +42,7 @@ class Stage {
   void part_visual(int body, std::span<const int> piece) { bodies_.at(body).visual->part(piece); }
   /// False (and nothing set) if the scene has no such tool.
   bool set_tool(const ToolState& state);
+  /// In the corner that the tools, each as it was seen first, leave free.
   void set_overlay(std::vector<std::string> lines, std::optional<Gauge> gauge);
 
   /// The picture's contents; the frame refers to this stage and is good until it changes.
@@ -49,6 +50,7 @@ class Stage {
 
  private:
   void add_backdrop(const TriangleMesh& mesh, Finish finish, const std::array<double, 3>& colour);
+  void put_overlay_aside();
   struct Soft;
   void refine(Soft& body, std::span<const std::array<int, 3>> triangles) const;
   void add_wall(Soft& body, const BodyLook& look) const;

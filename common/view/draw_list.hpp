@@ -68,16 +68,27 @@ struct Legend {
   double max = 0.01;  ///< [m] value of the last colour; the first one is 0
 };
 
-/// A horizontal bar below the overlay's lines.
+/// A horizontal bar below the overlay's lines, with the value of its right end beside it.
 struct Gauge {
   double value = 0;  ///< in the unit of `full`
   double full = 1;   ///< value at the bar's right end
+  std::string unit{};
 };
 
-/// Text in the upper left corner, one line each; UTF-8, Latin-1 range.
+/// Of a picture.
+enum class Corner { upper_left, upper_right, lower_left, lower_right };
+constexpr bool is_right(Corner corner) {
+  return corner == Corner::upper_right || corner == Corner::lower_right;
+}
+constexpr bool is_lower(Corner corner) {
+  return corner == Corner::lower_left || corner == Corner::lower_right;
+}
+
+/// Text in a corner, one line each; UTF-8, Latin-1 range.
 struct Overlay {
   std::vector<std::string> lines;
   std::optional<Gauge> gauge;
+  Corner corner = Corner::upper_left;
 };
 
 struct Frame {

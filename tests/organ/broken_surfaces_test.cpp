@@ -81,7 +81,7 @@ std::vector<Broken> broken_surfaces() {
   all.push_back({"crossing.stl",
                  stl(crossing),
                  mm,
-                 {"pairs of triangles cross one another, the first at"},
+                 {"pairs of triangles that cross one another, the first at"},
                  kBall + 4.0 / 3 * std::numbers::pi * 6.4e-5 - lens,
                  0.05});
   TriangleMesh at_node = make_box({0, 0, 0}, {40, 40, 40});

@@ -247,7 +247,7 @@ TEST_F(SurfaceRepair, ACrossingSurfaceIsToldWithItsPlace) {
   EXPECT_TRUE(repaired.crosses_itself);
   ASSERT_EQ(repaired.findings.size(), 2u);
   expect_has(say(repaired.findings[0]), "joined to it");
-  expect_has(say(repaired.findings[1]), "pairs of triangles cross one another, the first at (");
+  expect_has(say(repaired.findings[1]), "pairs of triangles that cross one another, the first at (");
 }
 
 TEST_F(SurfaceRepair, AnEdgeOfThreeTrianglesIsParted) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render_node/clear_corner.hpp"
 #include "render_node/font.hpp"
 #include "tests/render/scenery.hpp"
 
@@ -46,6 +47,28 @@ TEST(Overlay, GaugeGrowsWithTheValue) {
     EXPECT_GT(now, last);
     last = now;
   }
+}
+
+TEST(Overlay, StandsInTheCornerThatTheInstrumentsLeaveFree) {
+  const Camera camera{.eye = {0, -0.3, 0}};
+  const auto towards = [](const Eigen::Vector3d& handle) {
+    InstrumentView tool;
+    tool.tip.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -handle).toRotationMatrix();
+    return tool;
+  };
+  const InstrumentView left = towards({-1, 0, 0.75}), right = towards({1, 0, 0.75}), below = towards({-1, 0, -0.75});
+  const auto corner = [&](std::vector<InstrumentView> tools) { return clear_corner(camera, tools, 4.0 / 3); };
+  EXPECT_EQ(corner({}), Corner::upper_left);
+  EXPECT_EQ(corner({right}), Corner::upper_left);
+  EXPECT_EQ(corner({left}), Corner::upper_right);
+  EXPECT_EQ(corner({left, right}), Corner::lower_left);
+  EXPECT_EQ(corner({left, right, below}), Corner::lower_right);
+
+  Frame frame = empty_frame();
+  frame.overlay = Overlay{{"force 1.83 N"}, Gauge{1, 3, "N"}, Corner::lower_right};
+  const Image image = picture(frame, 640, 480);
+  for (int y = 0; y < 480; ++y)
+    for (int x = 0; x < 640; ++x) ASSERT_TRUE((x > 400 && y > 380) || !is_text(image.pixel(x, y)));
 }
 
 TEST(Overlay, LatinLettersBeyondAsciiAreDrawn) {

@@ -236,7 +236,7 @@ std::vector<std::pair<int, int>> crossings_of(const TriangleMesh& mesh) try {
 bool note_crossings(const TriangleMesh& mesh, std::vector<Finding>& findings) {
   std::vector<Eigen::Vector3d> places;
   for (const auto& [a, b] : crossings_of(mesh)) places.push_back(place_of(mesh, mesh.triangles[a]));
-  note({"pair of triangles cross one another", "pairs of triangles cross one another"},
+  note({"pair of triangles that cross one another", "pairs of triangles that cross one another"},
        "the body is all that the surface goes round", places, findings);
   return !places.empty();
 }
