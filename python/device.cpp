@@ -153,7 +153,9 @@ PYBIND11_MODULE(_device, module) {
       .def_readonly("torque", &MotorForce::torque, "[N m] on the tool about its tip, world")
       .def_readonly("along", &MotorForce::along, "[N m, N m, N, N m] the same along yaw, pitch, depth, roll")
       .def_readonly("grip", &MotorForce::grip, "[N m] on the handle, opening the jaws");
-  py::class_<Device>(module, "Device")
+  py::class_<Device>(
+      module, "Device",
+      "The driver of a tool: what a hand does goes out, the force on it comes back, as a motor may give it.")
       .def(py::init([](std::uint32_t tool, int domain, const std::string& interface,
                        const std::vector<std::string>& peers, const std::string& keys, double max_force,
                        double max_torque, double max_grip, double max_force_rate) {

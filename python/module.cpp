@@ -63,7 +63,7 @@ PYBIND11_MODULE(_core, module) {
   using namespace palpate;
   using namespace palpate::python;
   module.doc() = "palpate's simulator, in lock step, and its logs";
-  py::class_<Scene>(module, "Scene")
+  py::class_<Scene>(module, "Scene", "A scene file, read and checked, with what is set in place of its keys.")
       .def(py::init(
                [](const std::filesystem::path& file, const Changes& set) { return load_scene(file, changes_of(set)); }),
            py::arg("file"), py::arg("set") = Changes(),

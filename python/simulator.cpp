@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "common/scene/ensure_archive.hpp"
 #include "python/bindings.hpp"
 #include "tools/drive/figures.hpp"
@@ -10,11 +13,17 @@ namespace {
 
 using Dofs = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-constexpr int kDofs = 6;  // yaw, pitch, depth, roll, grip, pedal
+constexpr int kBetweenSignals = 100;  // steps
+constexpr int kDofs = 6;              // yaw, pitch, depth, roll, grip, pedal
 
 std::vector<Archive> archives_of(const Scene& scene) {
   drive::lock_step_devices(scene);
   return load_or_precompute(scene, ArchivePart::surface);
+}
+
+template <class T, std::size_t N>
+py::array_t<T> array_of(const std::array<T, N>& values) {
+  return py::array_t<T>(N, values.data());
 }
 
 class Simulator {
@@ -31,10 +40,13 @@ class Simulator {
 
   void follow(int steps) {
     if (steps < 0) throw py::value_error(fmt::format("{} steps cannot be followed: give 0 or more", steps));
-    const py::gil_scoped_release others_may_run;
-    for (int i = 0; i < steps; ++i) {
-      lock_step_.step();
-      watch_.look(lock_step_.simulator());
+    for (int done = 0; done < steps; done += kBetweenSignals) {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();  // Ctrl-C
+      const py::gil_scoped_release others_may_run;
+      for (int i = done; i < std::min(steps, done + kBetweenSignals); ++i) {
+        lock_step_.step();
+        watch_.look(lock_step_.simulator());
+      }
     }
   }
 
@@ -44,6 +56,8 @@ class Simulator {
           fmt::format("dofs must be an array of shape ({}, {}): yaw, pitch, depth, roll, grip and "
                       "pedal of each tool",
                       simulator().tools(), kDofs));
+    if (!std::all_of(dofs.data(), dofs.data() + dofs.size(), [](double d) { return std::isfinite(d); }))
+      throw py::value_error("dofs must be finite");
     std::vector<sim::ToolInput> inputs;
     for (int t = 0; t < simulator().tools(); ++t) {
       const double* d = dofs.data(t);
@@ -105,10 +119,10 @@ class Simulator {
     for (const HeldContact& c : simulator().contacts(tool).contacts) {
       py::dict contact;
       contact["body"] = name_of(scene_.bodies[c.body]);
-      contact["nodes"] = c.nodes;
-      contact["weights"] = c.weights;
-      contact["normal"] = c.normal;
-      contact["force"] = c.force;
+      contact["nodes"] = array_of(c.nodes);
+      contact["weights"] = array_of(c.weights);
+      contact["normal"] = array_of(c.normal);
+      contact["force"] = array_of(c.force);
       contact["sticking"] = c.sticking != 0;
       list.append(contact);
     }

@@ -222,7 +222,7 @@ RR3510 = [
          ("palpate check scenes/plate_cut.toml", "palpate drive scenes/plate_cut.toml --seconds 3.5 --json"),
          values=lambda run: {"nodes": run.number(r"'plate': ([\d,]+) nodes"), "tetrahedra": run.number(r"nodes, ([\d,]+) tetrahedra"),
                              "cut": run.figures(1)["body.plate.cut"], "sag": 1e3 * run.figures(1)["body.plate.displacement.max"]},
-         judged={"nodes": (759, 759), "tetrahedra": (2212, 2212), "cut": (1, 2212), "sag": (0.1, 50)}),
+         judged={"nodes": (759, 759), "tetrahedra": (2212, 2212), "cut": (80, 95), "sag": (20, 23)}),
     Item("RR3510", "fig. 3", "A cylinder of 248 vertices and 889 tetrahedra tears under gravity, where the relative change of volume passes a threshold.",
          "{nodes:.0f} nodes, {tetrahedra:.0f} tetrahedra. Of one material it tears below the clamp of its upper end, where it is stretched most: {torn_alone:.0f} tetrahedra within {seconds:.1f} s, in {pieces_alone:.0f} pieces. Tougher above and pulled a little to the side, it tears further down, from one side to the other: {torn:.0f}.",
          "They name no material.",
@@ -231,7 +231,7 @@ RR3510 = [
          values=lambda run: {"nodes": run.number(r"'cylinder': ([\d,]+) nodes"), "tetrahedra": run.number(r"nodes, ([\d,]+) tetrahedra"),
                              "torn": run.figures(1)["body.cylinder.torn"], "torn_alone": run.figures(2)["body.cylinder.torn"],
                              "pieces_alone": run.figures(2)["body.cylinder.pieces"], "seconds": run.figures(2)["seconds"]},
-         judged={"nodes": (248, 248), "tetrahedra": (889, 889), "torn": (50, 250), "pieces_alone": (2, 2), "torn_alone": (50, 250)},
+         judged={"nodes": (248, 248), "tetrahedra": (889, 889), "torn": (115, 137), "pieces_alone": (2, 2), "torn_alone": (115, 137)},
          pictures=(("papers_tear.jpg", "A cylinder of one material after 0.5 s, still whole, and after 0.68 s"),)),
     Item("RR3510", "table 2", "The pre-computed model takes displacements, not forces; the tensor-mass model takes both.",
          "Every model with static states takes both: 1 mN moves a node of a quasi-static plate by {quasi_static:.0f} µm, of a tensor-mass plate by {tensor_mass:.1f} µm, "
@@ -265,7 +265,7 @@ RR3510 = [
                       "share": run.number(r"([\d.]+) % of the tetrahedra"), "moving_nodes": run.number(r"moving: ([\d,]+) nodes"),
                       "moving": run.number(r"moving: [\d,]+ nodes, ([\d,]+) tetrahedra"), "cut": run.figures(1)["body.liver.cut"],
                       "off": run.figures(1)["body.liver.off"], "held": run.figures(1)["tool.forceps.force.end"]},
-         judged={"share": (17, 18.5), "cut": (200, 500), "off": (200, 1260), "held": (0.056, 0.068)}),
+         judged={"share": (17, 18.5), "cut": (200, 500), "off": (190, 240), "held": (0.056, 0.068)}),
 ]
 
 # ---- BHS01

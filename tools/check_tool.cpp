@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "common/tool/instrument.hpp"
@@ -20,8 +21,10 @@ void check_start(const Tool& tool, const std::filesystem::path& file, const Tool
                                            tool.name, name_of(body)));
 }
 
-bool reaches(const Tool& tool, const Trajectory& script, std::span<const CheckReport> bodies) {
+/// Where a body hangs by its weight is not looked for.
+bool may_reach(const Tool& tool, const Trajectory& script, std::span<const CheckReport> bodies) {
   constexpr int kTimes = 200;
+  if (std::ranges::any_of(bodies, &CheckReport::sags)) return true;
   const Trocar trocar = make_trocar(tool.pivot, tool.axis, tool.up);
   for (int i = 0; i <= kTimes; ++i) {
     const ToolDofs dofs = script.at(script.duration() * i / kTimes);
@@ -38,7 +41,7 @@ bool reaches(const Tool& tool, const Trajectory& script, std::span<const CheckRe
 std::vector<std::string> reach_warnings(const Scene& scene, std::span<const CheckReport> bodies) {
   std::vector<std::string> warnings;
   for (const Tool& tool : scene.tools)
-    if (const std::optional<Trajectory> script = script_of(tool.device); script && !reaches(tool, *script, bodies))
+    if (const std::optional<Trajectory> script = script_of(tool.device); script && !may_reach(tool, *script, bodies))
       warnings.push_back(
           fmt::format("tool '{}' comes to no body on its way: its trajectory ends before, or goes past", tool.name));
   return warnings;

@@ -54,6 +54,7 @@ WebLoop::WebLoop(const Scene& scene, const Eigen::Vector3d& origin, std::vector<
 
 void WebLoop::take() {
   source_.update();
+  source_.watch(now_ns());
   if (topology_) follow_cuts();
   while (const auto tool = tools_->take()) take_tool(*tool);
   while (const auto force = forces_->take()) {

@@ -93,9 +93,9 @@ class OwnSurfaces : public SurfaceSource {
       look();
       for (const std::string& said : range_.look(deformer_)) log_warning(said);
     }
-    feed_.watch_haptic(now_ns());
     return news;
   }
+  void watch(std::int64_t now) override { feed_.watch_haptic(now); }
 
   Shape shape(int body) const override { return {places_[body], deformer_.surface(body).normal, dents_[body]}; }
   Moment moment() const override { return {deformer_.run(), deformer_.step(), deformer_.sense_ns()}; }

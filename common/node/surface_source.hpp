@@ -20,6 +20,7 @@ class SurfaceSource {
   };
   virtual ~SurfaceSource() = default;
   virtual bool update() = 0;                ///< takes what has come; true if a newer haptic step is shown
+  virtual void watch(std::int64_t) {}       ///< of a live system, after update(): whether its haptic node is there
   virtual Shape shape(int body) const = 0;  ///< empty spans: not known yet, so at rest
   /// The haptic step shown.
   struct Moment {

@@ -23,7 +23,10 @@ TEST(DriveSweep, OfNothingOrTooMuchIsRefused) {
     EXPECT_THROW(parse_axis(bad), std::runtime_error) << bad;
   std::string thousand = "b=0";
   for (int i = 1; i < 1000; ++i) thousand += "," + std::to_string(i);
-  EXPECT_THROW(grid({}, {parse_axis(thousand), parse_axis(thousand)}), std::runtime_error);
+  std::string other = thousand;
+  other[0] = 'c';
+  EXPECT_THROW(grid({}, {parse_axis(thousand), parse_axis(other)}), std::runtime_error);
+  EXPECT_THROW(grid({}, {parse_axis("b=1,2"), parse_axis("c=1"), parse_axis("b=3")}), std::runtime_error);
 }
 
 TEST(DriveSweep, CommandsReachAShellAsTheyAre) {

@@ -2,9 +2,11 @@
 import math
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import warnings
 
 import palpate
@@ -60,3 +62,21 @@ simulator = palpate.Simulator(plate)
 refused(ValueError, "-1 steps", lambda: simulator.follow(-1))
 simulator.follow(0)
 assert simulator.time == 0
+for number in math.nan, math.inf:
+    refused(ValueError, "finite", lambda: simulator.step(np.full((2, 6), number)))
+for documented in palpate.Scene, palpate.Device, palpate.Simulator, palpate.Simulator.step:
+    assert documented.__doc__, documented
+
+threading.Timer(0.5, signal.raise_signal, [signal.SIGINT]).start()
+try:
+    simulator.follow(10**9)
+    assert False, "Ctrl-C ends it"
+except KeyboardInterrupt:
+    assert simulator.time > 0
+simulator = palpate.Simulator(plate)
+while not simulator.contacts(0):
+    assert not simulator.over
+    simulator.follow(100)
+contact = simulator.contacts(0)[0]
+for name, length in ("nodes", 3), ("weights", 3), ("normal", 3), ("force", 3):
+    assert isinstance(contact[name], np.ndarray) and contact[name].shape == (length,), name

@@ -129,6 +129,15 @@ TEST(Backdrop, OpenSheetsAreLiningAndClosedPartsAreBone) {
   EXPECT_EQ(sorted.lining.triangles[0][0], first);
 }
 
+TEST(Backdrop, AClosedPartThatFacesInwardIsLining) {
+  TriangleMesh mesh;
+  mesh.nodes = {{5, 0, 0}, {6, 0, 0}, {5, 1, 0}, {5, 0, 1}};
+  mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+  const Backdrop sorted = sort_backdrop(mesh);
+  EXPECT_TRUE(sorted.bones.triangles.empty());
+  EXPECT_EQ(sorted.lining.triangles.size(), mesh.triangles.size());
+}
+
 /// A second of a ball that is pressed, drawn and filmed.
 struct Filmed {
   RenderReport report;

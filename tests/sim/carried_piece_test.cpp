@@ -31,8 +31,8 @@ Momentum floating(const DynamicOrgan& organ) {
   organ.topology().parts(part);
   std::vector<char> held(part.size(), 0), listed(organ.mesh().nodes(), 0);
   for (int t = 0; t < organ.topology().size(); ++t)
-    for (int f = 0; f < 4; ++f)
-      if (part[t] >= 0 && organ.is_joint(4 * t + f)) held[part[t]] = 1;
+    for (const int node : organ.topology().tetrahedron(t))
+      if (part[t] >= 0 && organ.is_joined(node)) held[part[t]] = 1;
   Momentum all;
   for (int t = 0; t < organ.topology().size(); ++t) {
     if (part[t] < 0 || held[part[t]]) continue;

@@ -45,6 +45,21 @@ TEST_F(StabilityTable, ARunGoesOnWhereItWasRepeatsWhatFailedAndBeginsAnewForAnot
   EXPECT_EQ(read_rows(csv())[0].max_force, 2) << "another subject";
 }
 
+TEST_F(StabilityTable, PointsThatWereRunAloneAreTakenIntoTheTable) {
+  const std::vector<Point> alone{stable("a", 1), failing("b"), stable("c", 3)};
+  for (const std::size_t point : {1, 2})
+    run_table(alone, folder_of_point(folder_, point), point == 1 ? "one" : "of another program", {.point = point});
+  const std::vector<Point> all{stable("a", 10), stable("b", 20), stable("c", 30)};
+  EXPECT_EQ(run_table(all, folder_, "one"), 1) << "it is not run again at once";
+  const auto rows = read_rows(csv());
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].max_force, 10) << "was still to be run";
+  EXPECT_EQ(rows[1].outcome, "failed");
+  EXPECT_EQ(rows[2].max_force, 30) << "of another subject";
+  EXPECT_EQ(run_table(all, folder_, "one"), 0) << "and then it is";
+  EXPECT_THROW(run_table(all, folder_, "one", {.point = 3}), std::runtime_error);
+}
+
 TEST_F(StabilityTable, EachValueOfAParameterHasItsOwnRow) {
   const auto at = [](const std::string& value, double force) {
     return Point{.name = "press", .parameter = "depth", .value = value, .run = [force] {

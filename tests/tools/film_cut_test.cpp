@@ -31,7 +31,7 @@ TEST(FilmOfACut, DrawsNothingAcrossWhatHasTorn) {
   ASSERT_EQ(run.status, 0) << run.err;
   const LoggedScene logged(log, {});
   logged.ensure_archives();
-  LogPictures pictures(log, contents_of(log), logged.scene());
+  LogPictures pictures(log, contents_of(log, logged.scene()), logged.scene());
   EXPECT_LT(longest_edge(pictures.at(0.1)), 0.006f);
   EXPECT_LT(longest_edge(pictures.at(3)), 0.006f);
 }

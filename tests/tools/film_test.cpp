@@ -3,6 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/bus/log_reader.hpp"
+#include "common/bus/log_writer.hpp"
+#include "idl/topics.hpp"
 #include "tests/tools/comes_within.hpp"
 #include "tests/tools/program_result.hpp"
 #include "tests/tools/unnamed_file.hpp"
@@ -101,10 +104,44 @@ TEST_F(ToolsFilm, AStretchShowsWhatTheWholeFilmShowsThen) {
   EXPECT_LT(apart(begin, picture("whole", 15)), whole_way / 4) << whole_way;
 }
 
+// A recorder that came three seconds before the scene.
+TEST_F(ToolsFilm, TimesCountFromTheScenesFirstStep) {
+  const LoopbackScene scene("film-early", testing::kLinear);
+  const auto on_time = *folder_ / "on_time.lcmlog", early = *folder_ / "early.lcmlog";
+  ASSERT_EQ(run_program(
+                fmt::format("{} drive {} --seconds 1.1 --log {}", program("palpate"), scene.scene(), on_time.string()))
+                .status,
+            0);
+  {
+    LogReader reader(on_time);
+    LogWriter writer(early, std::size_t{1} << 30);
+    constexpr std::int64_t kEarly = 3'000'000'000;
+    LogEvent event;
+    std::int64_t earlier = kEarly;  // up to the first step
+    for (bool first = true; reader.next(event); first = false) {
+      if (first) writer.write(kHeaderChannel, event.receive_ns - kEarly, reader.header());
+      if (event.channel == topics::tool_state.name) earlier = 0;
+      writer.write_payload(event.channel, event.receive_ns - earlier, event.payload);
+    }
+    writer.finish();
+  }
+  for (const std::string name : {"on_time", "early"}) {
+    const auto drawn =
+        run_program(fmt::format("{} film {}.lcmlog -o {} --width 160 --height 120 --samples 1 --from 0.5 "
+                                "--to 0.8",
+                                program("palpate"), (*folder_ / name).string(), film(name).string()));
+    ASSERT_EQ(drawn.status, 0) << drawn.err;
+    EXPECT_EQ(drawn.err.find("the haptic node is gone"), std::string::npos) << drawn.err;
+  }
+  EXPECT_EQ(pictures("on_time"), pictures("early"));
+  EXPECT_GT(apart(picture("on_time", 0), picture("on_time", 9)), 20);
+  for (const int number : {0, 9}) EXPECT_LT(apart(picture("on_time", number), picture("early", number)), 5) << number;
+}
+
 TEST_F(ToolsFilm, WhatIsNotThereIsRefused) {
   const auto late = draw("late", "--from 5");
   EXPECT_EQ(late.status, 1);
-  EXPECT_NE(late.err.find("the log is 1."), std::string::npos) << late.err;
+  EXPECT_NE(late.err.find("the log has 0.00 s to 1."), std::string::npos) << late.err;
   EXPECT_FALSE(fs::exists(film("late")));
 }
 

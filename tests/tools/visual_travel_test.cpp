@@ -44,7 +44,7 @@ TEST_F(VisualTravel, ALogIsDrawnWithTheSurfaceItsColoursAndItsImageWhereTheirFil
   std::filesystem::remove_all(scene_.folder());
   const LoggedScene logged(log, {});
   logged.ensure_archives();
-  LogPictures pictures(log, contents_of(log), logged.scene());
+  LogPictures pictures(log, contents_of(log, logged.scene()), logged.scene());
   const Frame frame = pictures.at(0.2);
   std::size_t triangles = 0, textured = 0;
   for (const MeshView& mesh : frame.meshes) {

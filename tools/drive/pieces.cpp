@@ -13,8 +13,7 @@ Pieces pieces_of(const DynamicOrgan& organ) {
   for (int t = 0; t < topology.size(); ++t) {
     if (part_of[t] < 0) continue;
     ++size[part_of[t]];
-    for (int face = 0; face < 4; ++face)
-      if (topology.is_visible(4 * t + face) && organ.is_joint(4 * t + face)) hangs[part_of[t]] = 1;
+    for (const int node : topology.tetrahedron(t)) hangs[part_of[t]] |= organ.is_joined(node);
   }
   std::vector<int> off;
   for (std::size_t part = 0; part < size.size(); ++part)

@@ -34,6 +34,9 @@ Axis parse_axis(const std::string& text) {
 std::vector<std::vector<SceneChange>> grid(const std::vector<SceneChange>& always, const std::vector<Axis>& axes) {
   std::vector<std::vector<SceneChange>> points{always};
   for (const Axis& axis : axes) {
+    if (std::ranges::count(axes, axis.key, &Axis::key) > 1)
+      throw std::runtime_error(
+          fmt::format("--sweep {}: the key is swept twice: give all its values at once", axis.key));
     if (points.size() * axis.values.size() > kMaxPoints)
       throw std::runtime_error(fmt::format("a sweep of more than {} points", kMaxPoints));
     std::vector<std::vector<SceneChange>> more;

@@ -15,17 +15,17 @@
 namespace palpate {
 namespace {
 
-/// Which part of the log is drawn [s].
+/// Which part of the log is drawn [s], from the scene's first step on.
 struct Stretch {
   double begin, end;
 };
 
 Stretch stretch_of(const LogFilmSettings& s, const LogContents& contents) {
-  const double whole = contents.seconds;
-  const Stretch stretch{s.from, s.to > 0 ? std::min(s.to, whole) : whole};
+  const double first = std::max(0.0, -contents.scene_begin), last = contents.seconds - contents.scene_begin;
+  const Stretch stretch{std::max(s.from, first), s.to > 0 ? std::min(s.to, last) : last};
   if (!(stretch.begin < stretch.end))
-    throw std::runtime_error(fmt::format("{}: there is nothing between {} s and {} s: the log is {:.2f} s long", s.log,
-                                         stretch.begin, stretch.end, whole));
+    throw std::runtime_error(fmt::format("{}: there is nothing between {} s and {} s: the log has {:.2f} s to {:.2f} s",
+                                         s.log, s.from, s.to > 0 ? s.to : last, first, last));
   return stretch;
 }
 
@@ -35,7 +35,7 @@ LogFilmReport film_log(const LogFilmSettings& s, const std::function<bool(long, 
   const LoggedScene logged(s.log, s.data);
   logged.require_one_run();
   keep_files_of(logged.scene(), {s.film, s.still});
-  const LogContents contents = contents_of(s.log);
+  const LogContents contents = contents_of(s.log, logged.scene());
   const Stretch stretch = stretch_of(s, contents);
   logged.ensure_archives();
   LogPictures pictures(s.log, contents, logged.scene());

@@ -8,7 +8,7 @@ struct LogFilmSettings {
   std::string log, film;      ///< films are MP4
   std::string still;          ///< PNG of the moment of the greatest force; empty: none
   std::string data;           ///< folder for the files that the log brings along; empty: none
-  double from = 0, to = 0;    ///< [s] of the log; to 0: its end
+  double from = 0, to = 0;    ///< [s] from the scene's first step on; to 0: the log's end
   double speed = 1;           ///< 0.1: ten times slower than it was
   double rate = 30;           ///< [1/s] pictures of the film
   int width = 0, height = 0;  ///< [pixel] 0: the scene's

@@ -23,7 +23,8 @@ bool has_shapes(const LogContents& contents, const Scene& scene, const std::stri
 }  // namespace
 
 LogPictures::LogPictures(const std::filesystem::path& log, const LogContents& contents, const Scene& scene)
-    : received_(has_shapes(contents, scene, log.string())),
+    : scene_begin_(contents.scene_begin),
+      received_(has_shapes(contents, scene, log.string())),
       loaded_(with_archives(scene, received_ ? ArchivePart::header : ArchivePart::surface, ArchivePart::header)),
       bus_(make_memory_bus(make_memory_network())),
       presence_(*bus_, "film", 0, loaded_.scene_hash, loaded_.archive_hash),
@@ -44,7 +45,7 @@ std::unique_ptr<SurfaceSource> LogPictures::make_source() {
 }
 
 Frame LogPictures::at(double seconds) {
-  stream_.send_until(seconds);
+  stream_.send_until(scene_begin_ + seconds);
   presence_.watch();
   show_.take();
   std::string time = fmt::format("{:.2f} s", seconds);

@@ -19,7 +19,7 @@ class LogPictures {
   /// The archives of the scene are there. Throws std::runtime_error if the log lacks what cannot be computed.
   LogPictures(const std::filesystem::path& log, const LogContents& contents, const Scene& scene);
 
-  /// What was known `seconds` after the log's first sample; not before the time of the last call. The frame is good
+  /// What was known `seconds` after the scene's first step; not before the time of the last call. The frame is good
   /// until the next one.
   Frame at(double seconds);
   const Show& show() const { return show_; }
@@ -28,7 +28,8 @@ class LogPictures {
  private:
   std::unique_ptr<SurfaceSource> make_source();
 
-  bool received_;  ///< all shapes are in the log
+  double scene_begin_;  ///< [s] as of LogContents
+  bool received_;       ///< all shapes are in the log
   LoadedScene loaded_;
   std::unique_ptr<Bus> bus_;
   Presence presence_;

@@ -76,19 +76,19 @@ void write_course(const fs::path& file, const LogFigures& figures, const Scene& 
   write_text(file, text);
 }
 
-/// The times of `count` pictures [s]: the middles of as many parts of the session.
+/// The times of `count` pictures [s], from the scene's first step on: the middles of as many parts of the session.
 std::vector<double> picture_times(const LogContents& contents, int count) {
+  const double first = std::max(0.0, -contents.scene_begin), last = contents.seconds - contents.scene_begin;
   std::vector<double> times;
-  for (int i = 0; i < count; ++i) times.push_back(contents.seconds * (i + 0.5) / count);
+  for (int i = 0; i < count; ++i) times.push_back(first + (last - first) * (i + 0.5) / count);
   return times;
 }
 
-/// `scene_begin` [s]: as of LogFigures; times are told from it on.
-ordered_json draw(const LogReportSettings& s, std::size_t session, const LoggedScene& logged, double scene_begin) {
+ordered_json draw(const LogReportSettings& s, std::size_t session, const LoggedScene& logged) {
   ordered_json drawn = ordered_json::array();
   if (s.pictures == 0) return drawn;
   logged.ensure_archives();
-  const LogContents contents = contents_of(s.logs[session]);
+  const LogContents contents = contents_of(s.logs[session], logged.scene());
   LogPictures pictures(s.logs[session], contents, logged.scene());
   const Render picture = logged.scene().render.value_or(Render{});
   constexpr int kWidth = 480;
@@ -101,7 +101,7 @@ ordered_json draw(const LogReportSettings& s, std::size_t session, const LoggedS
     renderer.draw(frame, image);
     const std::string name = picture_name(session, drawn.size());
     write_png(image, s.folder / name);
-    drawn.push_back({{"time", time - scene_begin}, {"file", name}});
+    drawn.push_back({{"time", time}, {"file", name}});
   }
   return drawn;
 }
@@ -153,7 +153,7 @@ ordered_json report_of(const LogReportSettings& s, std::size_t session, Unfinish
                       {"damage", damage},
                       {"course", course}};
   report.update(figures.json());
-  report["pictures"] = draw(s, session, logged, figures.scene_begin());
+  report["pictures"] = draw(s, session, logged);
   return report;
 }
 

@@ -42,7 +42,9 @@ void add_film_command(cli::Command& app) {
   command.add_option("LOG", s->log, "Topic log").required();
   command.add_option("-o,--output", s->film, "Film (MP4)").required().output_file(".mp4");
   command.add_option("--still", s->still, "Picture (PNG) of the moment of the greatest force").output_file(".png");
-  command.add_option("--from", s->from, "Begin there [s]").between(0.0, 1e6).show_default();
+  command.add_option("--from", s->from, "Begin there [s], from the scene's first step on")
+      .between(0.0, 1e6)
+      .show_default();
   command.add_option("--to", s->to, "End there [s] (default: with the log)").positive();
   command.add_option("--speed", s->speed, "2 shows it twice as fast").between(1e-4, 1e4).show_default();
   command.add_option("--rate", s->rate, "Pictures per second of the film").between(1.0, 240.0).show_default();
@@ -103,6 +105,7 @@ int main(int argc, char** argv) {
   palpate::cli::CommandLine app{"Films and reports of topic logs, pictures of motions; started by `palpate`"};
   app.show_version(PALPATE_VERSION);
   app.require_command();
+  app.examples({"palpate film out/liver.lcmlog -o out/liver.mp4", "palpate report out/liver.lcmlog -o out/page"});
   palpate::add_film_command(app);
   palpate::add_report_command(app);
   palpate::add_path_command(app);

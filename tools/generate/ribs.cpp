@@ -73,18 +73,19 @@ void add_spine(TriangleMesh& mesh) {
       });
 }
 
-/// All around the room that gas makes for the camera, with a dome above, and down beyond what the camera sees, so that
-/// no edge shows; from outside it is not drawn.
+/// All around the room that gas makes for the camera, with a dome above and another below, so that it has no edge; from
+/// outside it is not drawn.
 void add_wall(TriangleMesh& mesh) {
-  constexpr int kRows = 8, kDomeRows = 6, kColumns = 36;
+  constexpr int kFloorRows = 4, kRows = 4, kDomeRows = 6, kColumns = 36;
   constexpr double kBlown = 2.8;                                // how much farther the front is than the back
-  constexpr double kBottom = -0.40, kTop = 0.17, kDome = 0.15;  // [m]; the dome's height
-  add_grid(mesh, kRows + kDomeRows, kColumns, true, [&](int r, int c) {
+  constexpr double kBottom = -0.40, kTop = 0.17, kDome = 0.15;  // [m]; a dome's height
+  add_grid(mesh, kFloorRows + kRows + kDomeRows, kColumns, true, [&](int r, int c) {
     const double angle = 2 * std::numbers::pi * c / kColumns - std::numbers::pi;
-    const double up = std::min(1.0, static_cast<double>(r) / kRows);
-    const double risen = std::numbers::pi / 2 * std::max(0, r - kRows) / kDomeRows;
+    const int row = std::clamp(r - kFloorRows, 0, kRows), beyond = r - kFloorRows - row;  // of the wall; of a dome
+    const double up = static_cast<double>(row) / kRows;
+    const double risen = std::numbers::pi / 2 * beyond / (beyond < 0 ? kFloorRows : kDomeRows);
     const Vector3d rim = chest(angle, kBottom + (kTop - kBottom) * up, 1.10 - 0.05 * up);
-    const Vector3d middle = {kMidline, 0, kTop};
+    const Vector3d middle = {kMidline, 0, kBottom + (kTop - kBottom) * up};
     const Vector3d p = middle + std::cos(risen) * (rim - middle) + Vector3d(0, 0, kDome * std::sin(risen));
     return Vector3d(p.x(), p.y() < 0 ? kBlown * p.y() : p.y(), p.z());
   });

@@ -17,6 +17,7 @@
 namespace palpate::stability {
 namespace {
 
+constexpr const char *kTable = "stability.csv", *kSubject = "subject.txt";
 constexpr const char* kHeading = "case,parameter,value,outcome,max_force,energy_growth,note";
 
 std::string quoted(const std::string& text) {
@@ -101,28 +102,57 @@ std::vector<Row> read_rows(const std::filesystem::path& file) {
   return rows;
 }
 
+namespace {
+
+/// Of a folder's table; none where it is of another subject.
+std::vector<Row> rows_for(const std::filesystem::path& folder, const std::string& subject) {
+  return text_of(folder / kSubject) == subject ? read_rows(folder / kTable) : std::vector<Row>();
+}
+
+std::optional<Row> row_of(const Point& p, const std::vector<Row>& rows) {
+  const auto kept = std::ranges::find_if(
+      rows, [&](const Row& r) { return r.name == p.name && r.parameter == p.parameter && r.value == p.value; });
+  return kept == rows.end() ? std::nullopt : std::optional(*kept);
+}
+
+}  // namespace
+
+std::filesystem::path folder_of_point(const std::filesystem::path& folder, std::size_t point) {
+  return folder / "points" / std::to_string(point);
+}
+
 int run_table(const std::vector<Point>& points, const std::filesystem::path& folder, const std::string& subject,
               const TableRun& how) {
   const std::set<std::string> known = read_known(how.known);
-  const auto asked = [&](const Point& p) { return p.name.find(how.only) != std::string::npos; };
+  if (how.point && *how.point >= points.size())
+    throw std::runtime_error(fmt::format("stability: there are {} points, from 0 on", points.size()));
+  const auto asked = [&](const Point& p) {
+    return how.point ? &p == &points[*how.point] : p.name.find(how.only) != std::string::npos;
+  };
   if (std::ranges::none_of(points, asked))
     throw std::runtime_error(fmt::format("stability: no case's name contains '{}'", how.only));
-  const auto csv = folder / "stability.csv", mark = folder / "subject.txt";
+  const auto csv = folder / kTable, mark = folder / kSubject;
   prepare_folder(folder, {csv.filename(), fmt::format("{}\n", kHeading)}, {"index.html"});
-  std::vector<Row> before;
-  if (text_of(mark) == subject) before = read_rows(csv);
+  const std::vector<Row> before = rows_for(folder, subject);
   std::ofstream(mark) << subject << "\n";
   std::vector<std::optional<Row>> rows;
   std::vector<Point> to_run;
   std::vector<std::size_t> places;
+  std::vector<std::filesystem::path> taken;
   for (const Point& p : points) {
-    const auto kept = std::ranges::find_if(
-        before, [&](const Row& r) { return r.name == p.name && r.parameter == p.parameter && r.value == p.value; });
-    rows.push_back(kept == before.end() ? std::nullopt : std::optional(*kept));
+    const std::filesystem::path alone = folder_of_point(folder, rows.size());
+    rows.push_back(row_of(p, rows_for(alone, subject)));
+    if (rows.back()) {
+      taken.push_back(alone);
+      continue;
+    }
+    rows.back() = row_of(p, before);
     if (!asked(p) || (rows.back() && rows.back()->outcome != "failed")) continue;
     places.push_back(rows.size() - 1);
     to_run.push_back(p);
   }
+  write_rows(rows, csv);
+  for (const std::filesystem::path& alone : taken) std::filesystem::remove_all(alone);
   std::size_t done = 0;
   run_guarded(to_run, how.jobs, [&](const GuardedRow& ended) {
     const Row& row = ended.row;

@@ -19,7 +19,7 @@ std::vector<bool> pressed_nodes(const SurfaceMap& map) {
   return pressed;
 }
 
-/// Half the width of a patch, and the longest edge at the node: all pairs whose hats can reach into one patch.
+/// Half the width `radius` of a patch, and the longest edge at the node: all pairs whose hats can reach into one patch.
 std::vector<double> reach_of_patches(const SurfaceMap& map, double radius) {
   const std::vector<bool> pressed = pressed_nodes(map);
   std::vector<double> reach = longest_edges(map);
@@ -103,6 +103,12 @@ class Beyond {
 };
 
 }  // namespace
+
+double widest_patch(const SurfaceMap& map) {
+  Vector3d low = map.position[0], high = low;
+  for (const Vector3d& p : map.position) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  return 0.6 * (high - low).maxCoeff();
+}
 
 NearField::NearField(const SmoothSurface& surface, const Compliance<double>& compliance, const HalfSpace& half_space,
                      double radius, double resolved)

@@ -6,6 +6,9 @@
 
 namespace palpate {
 
+/// [m] Half the width of a patch that covers all of a body, from its middle on: there is no more to be pressed.
+double widest_patch(const SurfaceMap& map);
+
 /// What a body's compliance among near surface nodes has beyond the half-space's,
 ///   K = S (C - W^T G W) S^T,
 /// with C the archive's and W^T G W the half-space's between the same nodes (HatKernel). Under a patch of pressures of

@@ -16,10 +16,10 @@ int squares_across() {
 
 }  // namespace
 
-PatchGrid::PatchGrid(double radius, double length, const HalfSpace& half_space, Feet feet)
+PatchGrid::PatchGrid(double radius, double length, const HalfSpace& half_space, Feet feet, double widest)
     : radius_(radius),
       length_(length),
-      edge_(strip() ? 2 * radius / kStripRows : radius / kSquaresPerRadius),
+      edge_(std::min(radius, widest) * (strip() ? 2.0 / kStripRows : 1 / kSquaresPerRadius)),
       half_space_(half_space),
       columns_(strip() ? kStripColumns : squares_across()),
       rows_(strip() ? kStripRows : squares_across()),
@@ -29,7 +29,7 @@ PatchGrid::PatchGrid(double radius, double length, const HalfSpace& half_space, 
     for (int j = 0; j < rows_; ++j) {
       const double beside =
           strip() ? std::abs(across(j)) : edge_ * std::hypot(i - 0.5 * (columns_ - 1), j - 0.5 * (rows_ - 1));
-      if (beside >= kWidth * radius) continue;
+      if (beside >= kWidth * std::min(radius, widest)) continue;
       cells_.push_back({i, j});
       middle_.emplace_back(edge_ * (i - 0.5 * (columns_ - 1)), across(j));
       rise_.push_back(std::sqrt(radius * radius - beside * beside));
@@ -74,8 +74,8 @@ const PatchGrid& PatchGrids::of(double radius, double length, PatchGrid::Feet fe
   const auto known = std::ranges::find_if(grids_, [&](const auto& g) {
     return g->radius() == radius && g->length() == length && g->column_feet() == of_columns;
   });
-  return known != grids_.end() ? **known
-                               : *grids_.emplace_back(std::make_unique<PatchGrid>(radius, length, half_space_, feet));
+  if (known != grids_.end()) return **known;
+  return *grids_.emplace_back(std::make_unique<PatchGrid>(radius, length, half_space_, feet, widest_));
 }
 
 }  // namespace palpate

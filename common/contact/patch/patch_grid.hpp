@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -16,8 +17,9 @@ class PatchGrid {
 
   enum class Feet { of_columns, of_cells };  ///< of a segment's; a sphere's cells have their own
 
-  /// Of a sphere where `length` [m] is 0.
-  PatchGrid(double radius, double length, const HalfSpace& half_space, Feet feet = Feet::of_columns);
+  /// Of a sphere where `length` [m] is 0. `widest` [m]: half its width at most, however wide the part is.
+  PatchGrid(double radius, double length, const HalfSpace& half_space, Feet feet = Feet::of_columns,
+            double widest = std::numeric_limits<double>::infinity());
 
   int size() const { return static_cast<int>(cells_.size()); }
   double radius() const { return radius_; }  ///< [m] of the sphere, or about the segment
@@ -92,12 +94,14 @@ class PatchKernel {
 /// One grid for each shape, on one material.
 class PatchGrids {
  public:
-  explicit PatchGrids(const HalfSpace& half_space) : half_space_(half_space) {}
+  /// `widest` [m]: as PatchGrid takes it.
+  PatchGrids(const HalfSpace& half_space, double widest) : half_space_(half_space), widest_(widest) {}
   /// Stays where it is while this object lives.
   const PatchGrid& of(double radius, double length = 0, PatchGrid::Feet feet = PatchGrid::Feet::of_columns);
 
  private:
   HalfSpace half_space_;
+  double widest_;
   std::vector<std::unique_ptr<PatchGrid>> grids_;
 };
 

@@ -5,6 +5,8 @@
 namespace palpate {
 namespace {
 
+constexpr double kWidestBall = 0.1;  // [m] of radius
+
 bool is_shaft(const EndAbilities& can, int part) {
   return !can.turning || part == forceps_shaft;
 }
@@ -18,7 +20,7 @@ std::vector<PatchPart> patch_parts(std::span<const Tool> tools, bool shafts) {
     const std::vector<ToolPart> parts = tool_parts(tools[t]);
     for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
       const bool sphere = parts[p].length == 0;
-      if (sphere ? can.ball.has_value() : shafts && is_shaft(can, p))
+      if (sphere ? can.ball && parts[p].radius <= kWidestBall : shafts && is_shaft(can, p))
         all.push_back({static_cast<int>(t), p, parts[p].radius, parts[p].length});
     }
   }

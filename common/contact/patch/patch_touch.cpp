@@ -24,12 +24,12 @@ PatchTouch::PatchTouch(const SurfaceMap& map, const Compliance<double>& complian
       friction_(settings.contact.friction),
       way_out_(Patch::kWayOut * settings.dt),
       surface_(map),
-      grids_(half_space) {
+      grids_(half_space, widest_patch(map)) {
   double largest = 0;
   for (const PatchPart& part : patch_parts(settings.tools, !creep)) {
     parts_.push_back({part.tool, part.part, Patch(grids_.of(part.radius, part.length), creep)});
     parts_.back().forces.reserve(Patch::kMaxNodes);
-    largest = std::max(largest, part.radius);
+    largest = std::max(largest, std::min(part.radius, widest_patch(map)));
   }
   near_field_ = std::make_unique<NearField>(surface_, compliance, half_space, largest, resolved);
   moved_.reserve(Patch::kMaxNodes);

@@ -46,6 +46,7 @@ struct CheckReport {
   std::vector<std::string> warnings;  ///< what is legal but likely not meant
   /// Whether a part of a tool meets the body at rest, or lies inside one that is solid.
   std::function<bool(const Segment& axis, double radius)> meets;
+  bool sags = false;  ///< its weight takes it elsewhere
 };
 
 }  // namespace palpate

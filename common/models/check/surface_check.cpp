@@ -104,7 +104,8 @@ void say_patches(const CheckSettings& settings, const std::string& body, bool sh
 void add_near_field(const char* owner, const CheckSettings& settings, const SurfaceMap& surface, bool shafts,
                     CheckReport& report) {
   double radius = 0;
-  for (const PatchPart& part : patch_parts(settings.tools, shafts)) radius = std::max(radius, part.radius);
+  for (const PatchPart& part : patch_parts(settings.tools, shafts))
+    radius = std::max(radius, std::min(part.radius, widest_patch(surface)));
   if (settings.contact.rule != ContactRule::patch || radius == 0) return;
   report.memory.push_back({owner, "near field of patches", NearField::bytes_of(surface, radius)});
 }

@@ -144,8 +144,8 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
   else
     report.left_out.emplace_back("does not tear by itself");
   report.left_out.emplace_back("no archive in the haptic node");
-  if (kind.own_mesh && !d.gravity.isZero())
-    report.left_out.emplace_back("no sag is told of two meshes that are joined");
+  report.sags = !d.gravity.isZero();
+  if (kind.own_mesh && report.sags) report.left_out.emplace_back("no sag is told of two meshes that are joined");
   report.memory = memory(body, kind, settings, archive);
   add_near_field("deform_node", settings, archive.surface, true, report);
   warn_of_averaged_strain(body, settings, report);

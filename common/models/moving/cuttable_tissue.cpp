@@ -151,10 +151,9 @@ void CuttableTissue::find_floating() {
     const int part = part_of_[t];
     if (part < 0) continue;
     for (int node : topology_.tetrahedron(t)) {
-      held[part] |= mesh_.fixed[node][0] || mesh_.fixed[node][1] || mesh_.fixed[node][2];
+      held[part] |= joined_[node] || mesh_.fixed[node][0] || mesh_.fixed[node][1] || mesh_.fixed[node][2];
       if (!std::exchange(listed[node], 1)) nodes[part].push_back(node);
     }
-    for (int f = 0; f < 4; ++f) held[part] |= is_joint(4 * t + f);
   }
   floating_.clear();
   for (int part = 0; part < parts; ++part)

@@ -61,8 +61,8 @@ class CuttableTissue {
   const CutMesh& topology() const { return topology_; }
   const CutSurface& surface() const { return surface_; }
   CutSurface& surface() { return surface_; }
-  /// Facets by which the tissue hangs on a quasi-static part are inside the organ: nothing touches them.
-  bool is_joint(int facet) const { return shown_.is_joint(facet); }
+  /// Nodes by which the tissue hangs on a quasi-static part.
+  bool is_joined(int node) const { return joined_[node] != 0; }
   /// Outward triangles that are seen. Valid until the next call.
   const std::vector<std::array<int, 3>>& shown() { return shown_.triangles(topology_); }
   /// Of this tick; empty most of the time.

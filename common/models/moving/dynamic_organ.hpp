@@ -66,8 +66,8 @@ class DynamicOrgan {
   /// [m] of a surface node of either part.
   Eigen::Vector3d position(int node) const;
   Eigen::Vector3d displacement(int node) const;  ///< [m] of a node of either part
-  /// Facets by which moving tissue hangs on the quasi-static part are inside the organ: nothing touches them.
-  bool is_joint(int facet) const { return tissue_.is_joint(facet); }
+  /// Nodes by which moving tissue hangs on the quasi-static part.
+  bool is_joined(int node) const { return tissue_.is_joined(node); }
   bool holds(int tool) const;  ///< its jaws hold something of this organ
 
   using Change = CuttableTissue::Change;

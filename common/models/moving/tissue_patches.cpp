@@ -60,7 +60,7 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
       triangle_of_facet_(4 * topology.size(), -1),
       facet_of_triangle_(map_.triangles.size(), -1),
       material_{archive.young[0], archive.poisson[0]},
-      grids_(material_),
+      grids_(material_, widest_patch(map_)),
       ground_of_node_(mesh.rest.size(), 0),
       position_(mesh.rest) {
   std::map<std::array<int, 3>, int> facets;
@@ -79,7 +79,7 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
                       .patch = Patch(grids_.of(part.radius, part.length, PatchGrid::Feet::of_cells)),
                       .radius = part.radius,
                       .above = (part.length > 0 ? kSegmentAbove : kAbove) * part.radius});
-    largest = std::max(largest, part.radius);
+    largest = std::max(largest, std::min(part.radius, widest_patch(map_)));
   }
   for (Part& own : parts_) {
     const int most = own.patch.max_nodes(), pairs = most * (most + 1) / 2;
