@@ -81,7 +81,7 @@ void RenderLoop::keep_house(std::int64_t now) {
 void RenderLoop::step(std::int64_t begin) {
   clock_.follow();
   const bool news = show_.take();
-  source_.watch(begin);
+  source_.watch(now_ns());
   show_.tell(state_lines());
   const std::int64_t drawing = now_ns();
   renderer_.draw(show_.frame(), image_);
