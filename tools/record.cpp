@@ -118,7 +118,11 @@ void record(RecordOptions& o) {
   } else if (report.has_log) {
     print_report(o, report, elapsed());
   }
-  if (!report.has_log) throw std::runtime_error(o.file + ": nothing was there to record; it is left as it was");
+  if (!report.has_log) {
+    const std::string nothing = o.file + ": nothing was there to record; it is left as it was";
+    if (!o.supervised || !shutdown_requested()) throw std::runtime_error(nothing);
+    fmt::print(stderr, "palpate: {}\n", nothing);  // a run that is stopped before its first step
+  }
   if (report.log.lost > 0) throw std::runtime_error(fmt::format("{}: {}", o.file, loss_text(report.log)));
 }
 

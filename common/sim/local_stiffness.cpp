@@ -104,7 +104,7 @@ void LocalStiffness::settle(std::optional<Answer> found) {
 }
 
 // None where what is left is too badly shaped.
-std::optional<LocalStiffness::Answer> LocalStiffness::answer(const Question& question) const {
+std::optional<LocalStiffness::Answer> LocalStiffness::answer(const Question& question) {
   try {
     return solve(question);
   } catch (const std::exception& error) {
@@ -128,40 +128,50 @@ void LocalStiffness::for_each_share(int node, int axis, const DofMap& dofs, Visi
   }
 }
 
-LocalStiffness::Answer LocalStiffness::solve(const Question& question) const {
-  Answer answer{.nodes = question.nodes, .compliance = {}, .topology = question.removed.size()};
+const LocalStiffness::Left& LocalStiffness::left_after(const std::vector<int>& removed) {
+  if (left_ && left_->removed == removed) return *left_;
+  left_.reset();
   std::vector<bool> gone(mesh_.tetrahedra.size(), false);
-  for (int t : question.removed) gone[t] = true;
-  TetMesh left{.nodes = mesh_.rest, .tetrahedra = {}, .groups = {}};
+  for (int t : removed) gone[t] = true;
+  TetMesh mesh{.nodes = mesh_.rest, .tetrahedra = {}, .groups = {}};
   MaterialField materials{mesh_.materials, {}, {}};
   for (std::size_t t = 0; t < gone.size(); ++t) {
     if (gone[t]) continue;
-    left.tetrahedra.push_back(mesh_.tetrahedra[t]);
+    mesh.tetrahedra.push_back(mesh_.tetrahedra[t]);
     if (!mesh_.material_of.empty()) materials.of_element.push_back(mesh_.material_of[t]);
   }
-  if (mesh_.element == TetElement::nodal_strain) materials.nodal_strain.assign(left.tetrahedra.size(), 1);
+  if (mesh_.element == TetElement::nodal_strain) materials.nodal_strain.assign(mesh.tetrahedra.size(), 1);
+  Left left{removed, DofMap(mesh), {}};
+  for (int node = 0; node < mesh_.nodes(); ++node)
+    for (int axis = 0; axis < 3; ++axis)
+      if (mesh_.fixed[node][axis] && left.dofs.index(node, axis) != DofMap::kUnused) left.dofs.fix(node, axis);
+  left.dofs.number();
+  if (left.dofs.size() > 0) {
+    const SparseMatrix k = static_matrix(mesh, materials, left.dofs, joined_);
+    left.factor.emplace(k);
+    left.factor->factorise(k);
+  }
+  return left_.emplace(std::move(left));
+}
+
+LocalStiffness::Answer LocalStiffness::solve(const Question& question) {
+  Answer answer{.nodes = question.nodes, .compliance = {}, .topology = question.removed.size()};
   const auto n = static_cast<Eigen::Index>(answer.nodes.size());
   answer.compliance.setZero(3 * n, 3 * n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j)
       if (is_joined(answer.nodes[i]) && is_joined(answer.nodes[j]))
         answer.compliance.block<3, 3>(3 * i, 3 * j) = joined_.part->compliance(answer.nodes[i], answer.nodes[j]);
-  DofMap dofs(left);
-  for (int node = 0; node < mesh_.nodes(); ++node)
-    for (int axis = 0; axis < 3; ++axis)
-      if (mesh_.fixed[node][axis] && dofs.index(node, axis) != DofMap::kUnused) dofs.fix(node, axis);
-  dofs.number();
-  if (dofs.size() == 0 || n == 0) return answer;
+  if (n == 0) return answer;
+  const Left& left = left_after(question.removed);
+  if (!left.factor) return answer;
 
-  const SparseMatrix k = static_matrix(left, materials, dofs, joined_);
-  Factorisation factor(k);
-  factor.factorise(k);
-  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(dofs.size(), 3 * n);
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(left.dofs.size(), 3 * n);
   for (int row = 0; row < 3 * n; ++row)
-    for_each_share(answer.nodes[row / 3], row % 3, dofs, [&](int dof, double share) { unit(dof, row) = share; });
-  const Eigen::MatrixXd x = factor.solve(unit);
+    for_each_share(answer.nodes[row / 3], row % 3, left.dofs, [&](int dof, double share) { unit(dof, row) = share; });
+  const Eigen::MatrixXd x = left.factor->solve(unit);
   for (int row = 0; row < 3 * n; ++row)
-    for_each_share(answer.nodes[row / 3], row % 3, dofs,
+    for_each_share(answer.nodes[row / 3], row % 3, left.dofs,
                    [&](int dof, double share) { answer.compliance.row(row) += share * x.row(dof); });
   return answer;
 }

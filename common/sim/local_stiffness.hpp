@@ -13,6 +13,7 @@
 #include "common/dynamics/condensed_part.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
 #include "common/fem/boundary_conditions.hpp"
+#include "common/fem/factorisation.hpp"
 
 namespace palpate {
 
@@ -61,14 +62,22 @@ class LocalStiffness {
   };
   void work(const std::stop_token& stop);
   void settle(std::optional<Answer> found);
-  std::optional<Answer> answer(const Question& question) const;
+  std::optional<Answer> answer(const Question& question);
   bool is_joined(int node) const { return joined_.part && joined_.part->owns(node); }
   template <class Visit>
   void for_each_share(int node, int axis, const DofMap& dofs, Visit&& visit) const;
-  Answer solve(const Question& question) const;
+  /// What is left of the tissue, factorised: the same for all questions until more is removed.
+  struct Left {
+    std::vector<int> removed;
+    DofMap dofs;
+    std::optional<Factorisation> factor;  ///< none where nothing can move
+  };
+  const Left& left_after(const std::vector<int>& removed);
+  Answer solve(const Question& question);
 
   const ElasticMesh mesh_;
   const Condensation joined_;
+  std::optional<Left> left_;  ///< of the newest question; who solves alone uses it
   Answer current_, next_;
   Question question_;
   bool asked_ = false, answered_ = false;

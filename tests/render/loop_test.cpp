@@ -33,9 +33,11 @@ TEST(SurfaceSource, KeepsTheContactsOfADeadHapticNode) {
   contacts.contacts[0].normal = {0, 1, 0};
   writer->write(contacts);
   source->update();
+  source->watch(now_ns());
   EXPECT_FALSE(held->take());
   writer.reset();
   source->update();
+  source->watch(now_ns());
   const auto kept = held->take();
   ASSERT_TRUE(kept);
   EXPECT_EQ(kept->run, 5u);
