@@ -27,9 +27,14 @@ bool is_sound(const HeldContact& c) {
 
 FineDents::FineDents(const SurfaceMap& map, const Archive& archive, const HalfSpace& half_space,
                      std::span<const Tool> tools, double resolved)
-    : map_(map), surface_(map), half_space_(half_space), tips_(patch_parts(tools, false)), edge_(mean_edge(map)) {
+    : map_(map),
+      surface_(map),
+      half_space_(half_space),
+      tips_(patch_parts(tools, false)),
+      edge_(mean_edge(map)),
+      widest_(widest_patch(map)) {
   double largest = 0;
-  for (const PatchPart& tip : tips_) largest = std::max(largest, std::min(tip.radius, widest_patch(map)));
+  for (const PatchPart& tip : tips_) largest = std::max(largest, std::min(tip.radius, widest_));
   const Compliance<double> compliance(archive, Compliance<double>::Rows::touchable);
   near_field_ = std::make_unique<NearField>(surface_, compliance, half_space, largest, resolved);
   near_field_->subtract(compliance);
@@ -53,7 +58,7 @@ void FineDents::add_dent(const ContactState& state, const HeldContact& c) {
   if (!(pressing > 0)) return;
   Vector3d middle = Vector3d::Zero();
   for (int v = 0; v < 3; ++v) middle += c.weights[v] * map_.position[c.nodes[v]];
-  const double disc = std::min(HertzDent::disc_under(tip->radius, pressing, half_space_), widest_patch(map_));
+  const double disc = std::min(HertzDent::disc_under(tip->radius, pressing, half_space_), widest_);
   dents_.push_back({middle, -inward, force, disc, disc + kEdgesAround * edge_, half_space_});
 }
 

@@ -41,7 +41,7 @@ class FineDents {
   HalfSpace half_space_;
   std::vector<PatchPart> tips_;
   std::unique_ptr<NearField> near_field_;  ///< K - C
-  double edge_;                            ///< [m] mean
+  double edge_, widest_;                   ///< [m] mean edge; as widest_patch()
   std::vector<HertzDent> dents_;
 };
 
