@@ -8,8 +8,9 @@
 #include <stdexcept>
 
 #include "common/fem/assembly.hpp"
-#include "common/fem/boundary_conditions.hpp"
+#include "common/fem/dense.hpp"
 #include "common/fem/factorisation.hpp"
+#include "common/fem/ordering.hpp"
 #include "common/log/log.hpp"
 #include "common/realtime/settings.hpp"
 
@@ -20,8 +21,8 @@ constexpr double kFloatingHz = 0.2;  // far below an organ's lowest frequency
 
 // K + w^2 M over the free dofs of the remaining tetrahedra, with what is joined to it.
 SparseMatrix static_matrix(const TetMesh& mesh, const MaterialField& materials, const DofMap& dofs,
-                           const Condensation& joined) {
-  SparseMatrix k = assemble_stiffness(mesh, materials, dofs);
+                           const NodeGraph& graph, const Condensation& joined) {
+  SparseMatrix k = assemble_stiffness(mesh, materials, dofs, graph);
   std::vector<Eigen::Triplet<double, std::int64_t>> extra;
   const double w = 2 * std::numbers::pi * kFloatingHz;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
@@ -128,6 +129,17 @@ void LocalStiffness::for_each_share(int node, int axis, const DofMap& dofs, Visi
   }
 }
 
+// The nodes whose free dofs these go with.
+std::vector<int> LocalStiffness::moving_nodes(const std::vector<int>& nodes) const {
+  std::vector<int> moving;
+  for (const int node : nodes)
+    if (!is_joined(node)) moving.push_back(node);
+  if (moving.size() == nodes.size()) return moving;
+  for (const int node : joined_.nodes)
+    if (std::ranges::find(moving, node) == moving.end()) moving.push_back(node);
+  return moving;
+}
+
 const LocalStiffness::Left& LocalStiffness::left_after(const std::vector<int>& removed) {
   if (left_ && left_->removed == removed) return *left_;
   left_.reset();
@@ -141,16 +153,13 @@ const LocalStiffness::Left& LocalStiffness::left_after(const std::vector<int>& r
     if (!mesh_.material_of.empty()) materials.of_element.push_back(mesh_.material_of[t]);
   }
   if (mesh_.element == TetElement::nodal_strain) materials.nodal_strain.assign(mesh.tetrahedra.size(), 1);
-  Left left{removed, DofMap(mesh), {}};
+  Left left{removed, DofMap(mesh), {}, {}};
   for (int node = 0; node < mesh_.nodes(); ++node)
     for (int axis = 0; axis < 3; ++axis)
       if (mesh_.fixed[node][axis] && left.dofs.index(node, axis) != DofMap::kUnused) left.dofs.fix(node, axis);
   left.dofs.number();
-  if (left.dofs.size() > 0) {
-    const SparseMatrix k = static_matrix(mesh, materials, left.dofs, joined_);
-    left.factor.emplace(k);
-    left.factor->factorise(k);
-  }
+  left.graph = node_graph(mesh, materials);
+  left.matrix = static_matrix(mesh, materials, left.dofs, left.graph, joined_);
   return left_.emplace(std::move(left));
 }
 
@@ -164,15 +173,25 @@ LocalStiffness::Answer LocalStiffness::solve(const Question& question) {
         answer.compliance.block<3, 3>(3 * i, 3 * j) = joined_.part->compliance(answer.nodes[i], answer.nodes[j]);
   if (n == 0) return answer;
   const Left& left = left_after(question.removed);
-  if (!left.factor) return answer;
+  const std::vector<std::int64_t> last = dof_order(left.dofs, moving_nodes(answer.nodes));
+  const auto count = static_cast<Eigen::Index>(last.size());
+  if (count == 0) return answer;
 
-  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(left.dofs.size(), 3 * n);
-  for (int row = 0; row < 3 * n; ++row)
-    for_each_share(answer.nodes[row / 3], row % 3, left.dofs, [&](int dof, double share) { unit(dof, row) = share; });
-  const Eigen::MatrixXd x = left.factor->solve(unit);
+  Factorisation factor(left.matrix, dof_order(left.dofs, interior_first_order(left.graph, moving_nodes(answer.nodes))));
+  factor.factorise(left.matrix);
+  Eigen::MatrixXd among = factor.trailing_factor(static_cast<int>(count));
+  invert_from_cholesky(among);
+  among.triangularView<Eigen::StrictlyUpper>() = among.transpose();
+
+  std::vector<int> place(left.dofs.size(), -1);
+  for (Eigen::Index i = 0; i < count; ++i) place[last[i]] = static_cast<int>(i);
+  std::vector<Eigen::Triplet<double>> shares;
   for (int row = 0; row < 3 * n; ++row)
     for_each_share(answer.nodes[row / 3], row % 3, left.dofs,
-                   [&](int dof, double share) { answer.compliance.row(row) += share * x.row(dof); });
+                   [&](int dof, double share) { shares.emplace_back(row, place[dof], share); });
+  Eigen::SparseMatrix<double> goes_with(3 * n, count);
+  goes_with.setFromTriplets(shares.begin(), shares.end());
+  answer.compliance += goes_with * (goes_with * among).transpose();
   return answer;
 }
 

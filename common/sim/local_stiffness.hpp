@@ -12,8 +12,8 @@
 #include "common/describe/state.hpp"
 #include "common/dynamics/condensed_part.hpp"
 #include "common/dynamics/elastic_mesh.hpp"
+#include "common/fem/assembly.hpp"
 #include "common/fem/boundary_conditions.hpp"
-#include "common/fem/factorisation.hpp"
 
 namespace palpate {
 
@@ -66,11 +66,13 @@ class LocalStiffness {
   bool is_joined(int node) const { return joined_.part && joined_.part->owns(node); }
   template <class Visit>
   void for_each_share(int node, int axis, const DofMap& dofs, Visit&& visit) const;
-  /// What is left of the tissue, factorised: the same for all questions until more is removed.
+  std::vector<int> moving_nodes(const std::vector<int>& nodes) const;
+  /// What is left of the tissue: the same for all questions until more is removed.
   struct Left {
     std::vector<int> removed;
     DofMap dofs;
-    std::optional<Factorisation> factor;  ///< none where nothing can move
+    NodeGraph graph;
+    SparseMatrix matrix;
   };
   const Left& left_after(const std::vector<int>& removed);
   Answer solve(const Question& question);
