@@ -149,11 +149,7 @@ std::vector<SurfacePressure> parse_pressure(const std::string& text, const std::
   const auto [left, right] = parser.halves(text);
   const double pressure = parser.number<double>(right, "a number");
   if (!std::isfinite(pressure)) parser.fail("the pressure is not a finite number");
-  const std::vector<int> nodes = group(std::string(trim(left)));
-  std::vector<SurfacePressure> pressures;
-  for (const auto& t : triangles)
-    if (std::ranges::all_of(t, [&](int n) { return std::ranges::binary_search(nodes, n); }))
-      pressures.push_back({t, pressure});
+  auto pressures = pressures_on(triangles, group(std::string(trim(left))), pressure);
   if (pressures.empty()) parser.fail("the group has no triangle of the surface");
   return pressures;
 }

@@ -23,7 +23,8 @@ constexpr std::size_t kMaxMaterials = 1 << 16;  // of_element holds 16 bits
 std::size_t payload_bytes(const Archive& archive) {
   const auto& surface = archive.surface;
   const std::size_t doubles = archive.touchable_compliance.size() + archive.other_compliance.size() +
-                              3 * surface.position.size() + 3 * archive.young.size();
+                              3 * surface.position.size() + 3 * archive.young.size() + 3 * archive.sag.size() +
+                              3 * archive.load.size();
   const std::size_t integers = 4 * surface.position.size() + 3 * surface.triangles.size() +
                                2 * (archive.touchable_dofs.size() + archive.other_dofs.size()) +
                                archive.material_of_element.size();
@@ -47,7 +48,8 @@ void write_header(Hdf5Writer& file, const Archive& archive) {
   file.attribute("specimen_radial_slope", archive.specimen_radial_slope);
 }
 
-void write_surface(Hdf5Writer& file, const SurfaceMap& surface) {
+void write_surface(Hdf5Writer& file, const Archive& archive) {
+  const SurfaceMap& surface = archive.surface;
   file.dataset({"surface/position", "m",
                 "rest position of each node, touchable ones first, then the rest of the surface, then inner ones"},
                flatten(surface.position, 3, [](const auto& row, std::size_t c) { return double{row[c]}; }), 3);
@@ -55,6 +57,10 @@ void write_surface(Hdf5Writer& file, const SurfaceMap& surface) {
                std::vector<std::int32_t>(surface.node_number.begin(), surface.node_number.end()));
   file.dataset({"surface/fixed", "1", "1 where x, y, z of a node is fixed"},
                flatten(surface.fixed, 3, [](const auto& row, std::size_t c) { return std::int32_t{row[c]}; }), 3);
+  file.dataset({"surface/sag", "m", "displacement of each node under the body's dead loads and weight; absent: none"},
+               flatten(archive.sag, 3, [](const auto& row, std::size_t c) { return double{row[c]}; }), 3);
+  file.dataset({"surface/load", "N", "dead load on each node of what moves with inertia; absent: none"},
+               flatten(archive.load, 3, [](const auto& row, std::size_t c) { return double{row[c]}; }), 3);
   file.dataset({"surface/triangles", "1", "surface nodes of each triangle, outward by the right-hand rule"},
                flatten(surface.triangles, 3, [](const auto& row, std::size_t c) { return std::int32_t{row[c]}; }), 3);
 }
@@ -138,7 +144,11 @@ bool compliance_fits(const Archive& archive, ArchivePart part) {
 
 /// That its datasets fit together, and that no number in them leads out of another one.
 void check_fit(const Hdf5Reader& file, const Archive& archive, ArchivePart part) {
-  const bool fits = !archive.young.empty() && archive.young.size() == archive.poisson.size() &&
+  const auto of_nodes = [&](const auto& list) {
+    return list.empty() || list.size() == archive.surface.position.size();
+  };
+  const bool fits = of_nodes(archive.sag) && of_nodes(archive.load) && !archive.young.empty() &&
+                    archive.young.size() == archive.poisson.size() &&
                     surface_fits(archive.surface, archive.mesh_nodes) && compliance_fits(archive, part) &&
                     dynamic_part_fits(archive, part) && modal_part_fits(archive, part) && presses_fit(archive);
   if (!fits) file.fail("damaged: its datasets do not fit together");
@@ -151,7 +161,7 @@ void write_archive(const Archive& archive, const std::filesystem::path& file) {
   AtomicFile atomic(file, payload_bytes(archive) + kMetadataBytes, AtomicFile::Temporary::named);
   Hdf5Writer writer(atomic.path());
   write_header(writer, archive);
-  write_surface(writer, archive.surface);
+  write_surface(writer, archive);
   write_material(writer, archive);
   write_compliance(writer, archive);
   write_compressed(writer, archive);
@@ -177,6 +187,8 @@ Archive read_archive(const std::filesystem::path& file, ArchivePart part, const 
   archive.specimen_radial_slope = reader.number("specimen_radial_slope");
   read_material(reader, archive);
   archive.surface = read_surface(reader);
+  archive.sag = rows_of<Eigen::Vector3d>(3, reader.doubles("surface/sag"));
+  archive.load = rows_of<Eigen::Vector3d>(3, reader.doubles("surface/load"));
   archive.touchable_dofs = read_dofs(reader, "touchable/dofs");
   archive.other_dofs = read_dofs(reader, "other/dofs");
   if (part != ArchivePart::header) archive.touchable_compliance = reader.doubles("touchable/compliance");

@@ -63,6 +63,10 @@ struct Archive {
   /// Index into those per tetrahedron (of the mesh; of `tetrahedra` where there are any); empty: all have the first.
   std::vector<std::uint16_t> material_of_element;
   SurfaceMap surface;
+  /// [m] By how much its dead loads and its weight move each node of a body that is solved beforehand; empty: it has
+  /// none. Once read for a body (fit_archive) they are in the surface's positions, from which all displacements count.
+  std::vector<Eigen::Vector3d> sag;
+  std::vector<Eigen::Vector3d> load;           ///< [N] dead load per node of what moves with inertia; empty: none
   std::vector<std::array<int, 4>> tetrahedra;  ///< those that move with inertia: surface nodes, positively oriented
   std::vector<Dof> moving_dofs;                ///< free dofs of the touchable nodes, ascending, where there are any
   /// Compliance at rest of such a body as a whole among those dofs, packed like C_tt [m/N].

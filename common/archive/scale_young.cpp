@@ -34,6 +34,7 @@ void scale_young(Archive& archive, double young) {
     multiply(*compliance, 1 / factor);
   if (archive.compressed)
     archive.compressed = std::make_shared<CompressedCompliance>(archive.compressed->scaled(1 / factor));
+  for (Eigen::Vector3d& u : archive.sag) u /= factor;
   archive.specimen_force_slope *= factor;
   stiffen(archive.presses, factor);
   if (archive.condensed) stiffen(*archive.condensed, factor);

@@ -20,8 +20,11 @@ struct ElasticMesh {
   std::vector<Material> materials;             ///< the body's own first
   std::vector<std::uint16_t> material_of;      ///< index into materials per tetrahedron; empty: all have the first
   TetElement element = TetElement::linear;     ///< of all tetrahedra, for solves of the same body
+  std::vector<Eigen::Vector3d> load;           ///< [N] dead load per node, while it has a tetrahedron; empty: none
 
   const Material& material(int t) const { return materials[material_of.empty() ? 0 : material_of[t]]; }
+  /// `load`, with zeros where there is none.
+  std::vector<Eigen::Vector3d> dead_loads() const;
   int nodes() const { return static_cast<int>(rest.size()); }
 };
 

@@ -15,6 +15,7 @@ LinearTissue<Scalar>::LinearTissue(const ElasticMesh& mesh, Integrator integrato
       kernels_(kernels::active()),
       fixed_(mesh.fixed),
       load_(mesh.nodes(), Eigen::Vector3d::Zero()),
+      dead_(mesh.dead_loads()),
       own_mass_(mesh.nodes()),
       added_mass_(mesh.nodes(), 0),
       row_(number_for_locality(elements_.edges(), mesh.nodes())) {
@@ -31,7 +32,7 @@ LinearTissue<Scalar>::LinearTissue(const ElasticMesh& mesh, Integrator integrato
 template <class Scalar>
 void LinearTissue<Scalar>::write_response(int node) {
   const double total = mass(node);
-  const Eigen::Vector3d force = load_[node] + own_mass_[node] * gravity_;
+  const Eigen::Vector3d force = load_[node] + own_mass_[node] * gravity_ + dead_[node];
   Scalar* response = &response_[kNodeWidth * row_[node]];
   for (int axis = 0; axis < 3; ++axis) {
     const bool moves = total > 0 && !fixed_[node][axis];

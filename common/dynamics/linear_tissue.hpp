@@ -79,6 +79,7 @@ class LinearTissue : public DynamicModel {
   std::vector<std::array<bool, 3>> fixed_;
   Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> load_;                  // per node
+  std::vector<Eigen::Vector3d> dead_;                  // [N] per node, the mesh's own
   std::vector<double> own_mass_, added_mass_;          // per node
   std::vector<int> row_;                               // of each node in the arrays below
   Array<Scalar> motion_, rates_, product_, response_;  // as in NodeArrays

@@ -90,6 +90,15 @@ struct MovingSpec : SolidSpec {
   std::optional<Tearing> tearing;
 };
 
+/// Whether something acts on it all the time.
+inline bool is_loaded(const MovingSpec& b) {
+  return !b.dynamic.gravity.isZero(0) || !b.loads.empty();
+}
+inline void take_loads_off(MovingSpec& b) {
+  b.dynamic.gravity.setZero();
+  b.loads.clear();
+}
+
 inline void describe(Description& d, MovingSpec& b) {
   describe(d, static_cast<SolidSpec&>(b));
   d.table({"dynamic", "", "how it moves", Need::optional, Use::agreed, "defaults"}, b.dynamic);

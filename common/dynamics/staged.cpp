@@ -44,6 +44,7 @@ Staged<Scalar>::Staged(const ElasticMesh& mesh, Integrator integrator, double da
       mass_(mesh.rest.size(), 0),
       coupled_mass_(mesh.rest.size(), 0),
       load_(mesh.rest.size(), Eigen::Vector3d::Zero()),
+      dead_(mesh.dead_loads()),
       state_(8 * mesh.rest.size(), 0) {
   const std::size_t entries = 4 * mesh.rest.size();
   for (Array* array : {&constant_, &inverse_mass_, &force_, &stage_u_, &stage_v_, &sum_u_, &sum_v_, &present_})
@@ -127,7 +128,7 @@ void Staged<Scalar>::set_load(int node, const Eigen::Vector3d& force) {
 
 template <class Scalar>
 void Staged<Scalar>::sum_load(int node) {
-  const Eigen::Vector3d sum = load_[node] + mass_[node] * gravity_;
+  const Eigen::Vector3d sum = load_[node] + mass_[node] * gravity_ + dead_[node];
   for (int axis = 0; axis < 3; ++axis) constant_[4 * node + axis] = static_cast<Scalar>(sum[axis]);
 }
 

@@ -87,6 +87,7 @@ class Staged : public DynamicModel {
   std::vector<double> element_bound_;        // [rad^2/s^2]
   std::vector<double> mass_, coupled_mass_;  // [kg] per node
   std::vector<Eigen::Vector3d> load_;        // [N] per node
+  std::vector<Eigen::Vector3d> dead_;        // [N] per node, the mesh's own
   Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero();
   Array state_;     // u of all nodes, then v
   Array constant_;  // load and weight

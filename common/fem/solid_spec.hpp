@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Core>
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -19,8 +20,9 @@ struct Material {
 };
 
 /// Far above what there is, so that nothing that is made of them overflows.
-inline constexpr Range kYoungRange = above_up_to(0, 1e20);   ///< [Pa]; diamond has 1e12
-inline constexpr Range kDensityRange = above_up_to(0, 1e6);  ///< [kg/m^3]; osmium has 2.3e4
+inline constexpr Range kYoungRange = above_up_to(0, 1e20);       ///< [Pa]; diamond has 1e12
+inline constexpr Range kDensityRange = above_up_to(0, 1e6);      ///< [kg/m^3]; osmium has 2.3e4
+inline constexpr Range kLoadRange = strictly_within(-1e9, 1e9);  ///< [Pa]
 /// Positive definite elasticity that is not incompressible.
 inline constexpr Range kPoissonRange = strictly_within(-1, 0.5);
 
@@ -59,6 +61,28 @@ inline void describe(Description& d, BoundaryCondition& b) {
   d.axes({"axes", "", "which displacements are zero: letters of `x`, `y`, `z`", Need::optional, Use::stored}, b.axes);
 }
 
+/// A dead load on some nodes; one of its two kinds is set in a validated scene.
+struct LoadSpec {
+  Selector where;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] on all of them together
+  double pressure = 0;                              ///< [Pa] on the triangles among them, against their normals
+};
+
+inline void describe(Description& d, LoadSpec& l) {
+  describe(d, l.where, "nodes");
+  if (!d.writes() || l.pressure == 0)
+    d.vector(
+        {"force", "N", "on these nodes together, each takes the same share of it", Need::optional, Use::stored, "none"},
+        l.force);
+  if (!d.writes() || l.pressure != 0)
+    d.number({"pressure", "Pa",
+              "on the triangles of the surface whose corners are among these nodes, against their outward normals; "
+              "below zero it pulls",
+              Need::optional, Use::stored, "none"},
+             l.pressure, kLoadRange);
+  d.require(d.given("force") != d.given("pressure"), "", "a [[body.load]] is either a 'force' or a 'pressure'");
+}
+
 /// What every body has.
 struct NamedSpec {
   std::string name;
@@ -74,6 +98,7 @@ struct MeshedSpec : NamedSpec {
   double scale = 1;  ///< [m per mesh unit]
   Material material;
   std::optional<NodeSelector> touchable;  ///< absent: every free surface node
+  std::vector<LoadSpec> loads;
 };
 
 inline void describe(Description& d, MeshedSpec& b) {
@@ -85,6 +110,15 @@ inline void describe(Description& d, MeshedSpec& b) {
   describe(d, b.material);
   d.table({"touchable", "", "which nodes a tool can touch", Need::optional, Use::stored, "every free surface node"},
           b.touchable);
+  d.tables({"load", "", "what pulls or presses it all the time", Need::optional, Use::stored, "none"}, b.loads);
+}
+
+/// The weight of a body that is solved beforehand.
+inline void describe_weight(Description& d, Eigen::Vector3d& gravity) {
+  if (d.writes() && gravity.isZero(0)) return;
+  d.vector({"gravity", "m/s²", "of its own weight; zero where its mesh is its shape under it already", Need::optional,
+            Use::stored},
+           gravity);
 }
 
 /// A body of tetrahedra.

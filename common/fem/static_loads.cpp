@@ -56,19 +56,33 @@ void add_weight(const Vector3d& gravity, const FineSpace& space, const MaterialF
 
 }  // namespace
 
+std::vector<SurfacePressure> pressures_on(const std::vector<std::array<int, 3>>& triangles,
+                                          const std::vector<int>& nodes, double pressure) {
+  std::vector<SurfacePressure> pressures;
+  for (const auto& t : triangles)
+    if (std::ranges::all_of(t, [&](int n) { return std::ranges::binary_search(nodes, n); }))
+      pressures.push_back({t, pressure});
+  return pressures;
+}
+
 std::array<NodalLoad, 3> corner_loads(const SurfacePressure& p, const std::vector<Vector3d>& position) {
   const auto& [a, b, c] = p.triangle;
   const Vector3d third = -p.pressure / 3 * area_of(position, a, b, c);
   return {NodalLoad{a, third}, NodalLoad{b, third}, NodalLoad{c, third}};
 }
 
-std::vector<Vector3d> load_vector(const StaticLoads& loads, const TetMesh& mesh, const MaterialField& materials) {
-  const std::vector<double> mass = lumped_mass(mesh, materials);
-  std::vector<Vector3d> load;
-  for (const double m : mass) load.push_back(m * loads.gravity);
+std::vector<Vector3d> force_vector(const StaticLoads& loads, const std::vector<Vector3d>& position) {
+  std::vector<Vector3d> load(position.size(), Vector3d::Zero());
   for (const NodalLoad& one : loads.nodes) load.at(one.node) += one.force;
   for (const SurfacePressure& p : loads.pressures)
-    for (const NodalLoad& one : corner_loads(p, mesh.nodes)) load.at(one.node) += one.force;
+    for (const NodalLoad& one : corner_loads(p, position)) load.at(one.node) += one.force;
+  return load;
+}
+
+std::vector<Vector3d> load_vector(const StaticLoads& loads, const TetMesh& mesh, const MaterialField& materials) {
+  const std::vector<double> mass = lumped_mass(mesh, materials);
+  std::vector<Vector3d> load = force_vector(loads, mesh.nodes);
+  for (std::size_t n = 0; n < load.size(); ++n) load[n] += mass[n] * loads.gravity;
   return load;
 }
 

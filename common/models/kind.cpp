@@ -30,6 +30,7 @@ const VisualSpec* visual_of(const SolidSpec& body) {
 
 void fit_archive(const MeshedSpec& body, Archive& archive) {
   scale_young(archive, body.material.young);
+  for (std::size_t n = 0; n < archive.sag.size(); ++n) archive.surface.position[n] += archive.sag[n];
 }
 
 std::optional<Archive> made_archive(const MeshedSpec&) {

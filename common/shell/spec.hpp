@@ -66,12 +66,14 @@ inline void describe(Description& d, ShellBoundaryCondition& b) {
 
 /// A body of shell triangles.
 struct ShellSpec : MeshedSpec {
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
   std::vector<ShellBoundaryCondition> fixed;
   Shell shell;
 };
 
 inline void describe(Description& d, ShellSpec& b) {
   describe(d, static_cast<MeshedSpec&>(b));
+  describe_weight(d, b.gravity);
   d.tables({"fixed", "", "where the body is held", Need::required, Use::stored}, b.fixed);
   require_fixed(d, b.name, !b.fixed.empty());
   d.table({"shell", "", "the wall", Need::required, Use::stored}, b.shell);

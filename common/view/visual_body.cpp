@@ -20,8 +20,10 @@ std::optional<VisualBody> load_visual(const Body& body, const Archive& archive, 
   const VisualSpec* spec = visual_of(body);
   if (!spec) return {};
   VisualBody visual{load_visual_mesh(*spec, origin), {}, {}};
-  visual.binding = bind_visual(visual.mesh.position, counted_from(origin, archive.surface.position),
-                               archive.surface.triangles, archive.tetrahedra);
+  std::vector<Eigen::Vector3d> of_mesh = archive.surface.position;  // about which the visual surface lies
+  for (std::size_t n = 0; n < archive.sag.size(); ++n) of_mesh[n] -= archive.sag[n];
+  visual.binding =
+      bind_visual(visual.mesh.position, counted_from(origin, of_mesh), archive.surface.triangles, archive.tetrahedra);
   if (!spec->texture.empty()) visual.texture = read_png_bytes(spec->texture, kMaxTextureSide);
   return visual;
 }

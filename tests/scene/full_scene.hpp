@@ -78,6 +78,14 @@ specimen_scale = 0.1
 [body.touchable]
 nodes = [10, 11]
 
+[[body.load]]
+group = "attachment"
+force = [0, 0, -0.5]
+
+[[body.load]]
+nodes = [14, 15, 16]
+pressure = -200
+
 [body.offline]
 refine = 1
 element = "p2"
@@ -163,6 +171,7 @@ dynamic = { gravity = [0, 0, -1.5] }
 [[body]]
 name = "cystic_duct"
 mesh = "tube.stl"
+gravity = [0, 0, -9.81]
 model = "modal_shell"
 young = 2e5
 poisson = 0.45
@@ -179,6 +188,10 @@ bending = "polynomial"
 modes = 40
 damping = 3
 residual = false
+
+[[body.load]]
+box = [[0, 0, 0], [1, 1, 1]]
+force = [0.1, 0, 0]
 
 [[body]]
 name = "wire"

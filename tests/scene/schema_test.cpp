@@ -57,7 +57,7 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
         } else if (key == "fixed") {
           text = plain + line;
         } else if (key == "material" || key == "nonlinear" || key == "relaxation" || key == "touchable" ||
-                   key == "offline" || key == "visual") {
+                   key == "offline" || key == "visual" || key == "load") {
           text = held + line;
         } else if (key == "ball_radius" || key == "places") {
           text = held + "[body.nonlinear]\nlaw = \"neo_hookean\"\n" + line;

@@ -73,6 +73,22 @@ TEST_F(ContentHash, ChangesWithEveryKeyThatChangesAStoredNumber) {
       [](QuasiStaticSpec& b) {
         b.touchable = NodeSelector{{{7, 8}, {}, ""}};
       },
+      [](QuasiStaticSpec& b) {
+        b.gravity = {0, 0, -9.81};
+      },
+      [](QuasiStaticSpec& b) {
+        b.gravity = {0, 0, -9.81};
+        b.material.density = 1100;
+      },
+      [](QuasiStaticSpec& b) {
+        b.loads = {{Selector{{}, {}, "front"}, {0, 0, -1}, 0}};
+      },
+      [](QuasiStaticSpec& b) {
+        b.loads = {{Selector{{}, {}, "front"}, {0, 0, -2}, 0}};
+      },
+      [](QuasiStaticSpec& b) {
+        b.loads = {{Selector{{}, {}, "front"}, {0, 0, 0}, 100}};
+      },
       [&](QuasiStaticSpec& b) { region(b); },
       [&](QuasiStaticSpec& b) { region(b).material.young = 6e4; },
       [&](QuasiStaticSpec& b) { region(b).where.group = "vessel"; },

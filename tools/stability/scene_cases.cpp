@@ -24,13 +24,13 @@ struct Bend {
   bool controller = true;
 };
 
-/// Fails the row where moving tissue was flung, or has more energy than the work. Where it has weight this does work
+/// Fails the row where moving tissue was flung, or has more energy than the work. Where it is loaded this does work
 /// too, and its reach alone counts.
 void judge_tissue(const Scene& scene, std::span<const int> bodies, std::span<const TissueWatch> watches, Result& row) {
   for (std::size_t i = 0; i < watches.size(); ++i) {
     const Body& body = scene.bodies[bodies[i]];
     Result tissue{.note = {}};
-    watches[i].judge(tissue, motion_of(body).gravity.isZero());
+    watches[i].judge(tissue, !is_loaded(*as<MovingSpec>(body)));
     if (tissue.outcome != Outcome::failed) continue;
     row.outcome = Outcome::failed;
     row.note += fmt::format("{}tissue of '{}': {}", row.note.empty() ? "" : "; ", name_of(body), tissue.note);

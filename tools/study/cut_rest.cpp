@@ -114,7 +114,7 @@ Result rest_after_cut(const SolidCase& solid, const Body& body, Row row) {
   const Field load = load_on(solid, newton);
   const Field fresh = solve_loads(left, load).displacement;
   Body alone = body;
-  motion_of(alone).gravity.setZero();
+  take_loads_off(*as<MovingSpec>(alone));
   const auto begin = std::chrono::steady_clock::now();
   const Archive archive = precompute_on(alone, solid.mesh());
   row.offline_s = seconds_since(begin);

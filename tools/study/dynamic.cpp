@@ -100,7 +100,7 @@ class Dynamic : public Method {
   Ready prepare(const Scene& scene) const { return prepare(scene.bodies[body()], solid_->mesh()); }
 
   Ready prepare(Body body, const TetMesh& mesh) const {
-    motion_of(body).gravity.setZero();
+    take_loads_off(*as<MovingSpec>(body));
     Ready ready;
     const auto begin = std::chrono::steady_clock::now();
     ready.archive = precompute_on(body, mesh);

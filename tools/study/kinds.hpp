@@ -38,10 +38,10 @@ inline Methods methods_of(const HybridSpec& spec, const StudiedBody& body) {
                      moving_model<SpringMassSpec, HybridSpec>()});
 }
 
-/// What is pressed is without weight, and stays whole.
+/// What is pressed is without loads, and stays whole.
 inline void prepare_for_press(NamedSpec&) {}
 inline void prepare_for_press(MovingSpec& spec) {
-  spec.dynamic.gravity.setZero();
+  take_loads_off(spec);
   spec.tearing.reset();
 }
 

@@ -90,14 +90,14 @@ double largest_eigenvalue(const MatrixXd& connection, const std::vector<Dof>& co
 
 void condense_on_connection(const HybridSplit& split, const MaterialField& materials, const std::vector<Dof>& rows,
                             const std::vector<Dof>& columns, const std::vector<double>& mass,
-                            const Eigen::Vector3d& gravity, CondensedTensors& tensors) {
+                            const std::vector<Eigen::Vector3d>& load, CondensedTensors& tensors) {
   const auto count = static_cast<Index>(columns.size());
   auto blocks = take_apart(split, materials, columns);
   const auto row_index = inner_indices(split, rows);
   MatrixXd& stiffness = blocks.connection;
   tensors.bound = largest_eigenvalue(stiffness, columns, mass);
   VectorXd reaction(count);
-  for (Index c = 0; c < count; ++c) reaction[c] = mass[columns[c].node] * gravity[columns[c].axis];
+  for (Index c = 0; c < count; ++c) reaction[c] = load[columns[c].node][columns[c].axis];
   tensors.follow.assign(rows.size() * columns.size(), 0.0);
   tensors.sag.assign(rows.size(), 0.0);
   if (split.inner.size() > 0) {
@@ -110,10 +110,9 @@ void condense_on_connection(const HybridSplit& split, const MaterialField& mater
       for (std::size_t r = 0; r < rows.size(); ++r)
         for (Index c = 0; c < width; ++c) tensors.follow[r * count + begin + c] = -solved(row_index[r], c);
     }
-    VectorXd load(split.inner.size());
-    for (int i = 0; i < split.inner.size(); ++i)
-      load[i] = mass[split.inner.dof(i) / 3] * gravity[split.inner.dof(i) % 3];
-    const VectorXd sag = factor.solve(load);
+    VectorXd inside(split.inner.size());
+    for (int i = 0; i < split.inner.size(); ++i) inside[i] = load[split.inner.dof(i) / 3][split.inner.dof(i) % 3];
+    const VectorXd sag = factor.solve(inside);
     reaction -= blocks.coupling.transpose() * sag;  // H^T w_i = -K_ci K_ii^-1 w_i
     for (std::size_t r = 0; r < rows.size(); ++r) tensors.sag[r] = sag[row_index[r]];
   }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "common/fem/body_loads.hpp"
 #include "common/fem/lumped_mass.hpp"
 #include "common/fem/stopwatch.hpp"
 #include "common/mesh/mesh_file.hpp"
@@ -67,6 +68,16 @@ void add_compliance(const HybridSplit& split, const MaterialField& materials, co
   archive.other_compliance = std::move(compliance.other);
 }
 
+/// [N] Per mesh node: the weight of the quasi-static part, and dead loads on what is of this part alone.
+std::vector<Eigen::Vector3d> load_of_quasi_static(const HybridSpec& body, const TetMesh& mesh, const HybridSplit& split,
+                                                  const std::vector<double>& mass) {
+  auto load = force_vector(body_loads(body, mesh), mesh.nodes);
+  for (const int e : split.dynamic)
+    for (const int node : mesh.tetrahedra[e]) load[node].setZero();
+  for (std::size_t n = 0; n < load.size(); ++n) load[n] += mass[n] * body.dynamic.gravity;
+  return load;
+}
+
 void add_hybrid(const HybridSpec& body, const TetMesh& mesh, const HybridSplit& split, const MaterialField& whole,
                 const std::vector<int>& index, const Progress& progress, Archive& archive) {
   Stopwatch watch(progress);
@@ -92,7 +103,7 @@ void add_hybrid(const HybridSpec& body, const TetMesh& mesh, const HybridSplit& 
   auto rows = archive.touchable_dofs;
   rows.insert(rows.end(), archive.other_dofs.begin(), archive.other_dofs.end());
   condense_on_connection(split, materials, of_mesh(surface, rows), of_mesh(surface, tensors.dofs), mass,
-                         body.dynamic.gravity, tensors);
+                         load_of_quasi_static(body, mesh, split, mass), tensors);
   watch.lap("condensation on the connection nodes");
   add_compliance(split, materials, progress, archive);
   archive.condensed = std::move(tensors);

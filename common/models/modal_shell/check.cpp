@@ -6,6 +6,7 @@
 #include "common/contact/tool_contacts.hpp"
 #include "common/mesh/shell_file.hpp"
 #include "common/mesh/shell_quality.hpp"
+#include "common/models/check/loads_check.hpp"
 #include "common/models/check/surface_check.hpp"
 #include "common/models/modal_shell/precompute.hpp"
 #include "common/shell/boundary_conditions.hpp"
@@ -81,6 +82,7 @@ void check(const ModalShellSpec& body, const CheckSettings& settings, CheckRepor
   say_boundary_conditions(body, mesh, report);
   report.say(fmt::format("  material: young {} Pa, poisson {}, density {} kg/m3", body.material.young,
                          body.material.poisson, body.material.density));
+  say_loads(body, body.gravity, settings, report);
   say_wall(body.shell, mesh, report);
   say_touched_by_mesh(settings, report);
   say_modes(body.shell, dofs.translations(), settings.stored(ArchivePart::header), report);

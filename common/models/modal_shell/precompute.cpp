@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "common/fem/body_loads.hpp"
 #include "common/fem/dense.hpp"
 #include "common/fem/factorisation.hpp"
 #include "common/fem/stopwatch.hpp"
@@ -47,6 +48,31 @@ std::vector<Index> numbers_of(const SurfaceMap& surface, const std::vector<Dof>&
   std::vector<Index> numbers;
   for (const Dof& dof : surface_dofs) numbers.push_back(dofs.index(surface.node_number[dof.node], dof.axis));
   return numbers;
+}
+
+/// How its loads and its weight move the wall.
+std::vector<Eigen::Vector3d> sag_of(const ShellSpec& body, const ShellMesh& mesh, const ShellSystem& system,
+                                    const SurfaceMap& surface) {
+  const StaticLoads loads = body_loads(body, mesh.triangles, [&](const Selector& where, const std::string& place) {
+    return select_nodes(mesh, where, place);
+  });
+  if (loads.empty() && body.gravity.isZero(0)) return {};
+  const auto force = force_vector(loads, mesh.nodes);
+  const auto mass = lumped_shell_mass(mesh, material_of(body));
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(system.stiffness.rows());
+  for (int node = 0; node < system.dofs.nodes(); ++node)
+    for (int axis = 0; axis < 3; ++axis)
+      if (const int at = system.dofs.index(node, axis); at >= 0)
+        load[at] = force[node][axis] + mass[node] * body.gravity[axis];
+
+  Factorisation factor(system.stiffness);
+  factor.factorise(system.stiffness);
+  const Eigen::VectorXd u = factor.solve(load);
+  std::vector<Eigen::Vector3d> sag(surface.position.size(), Eigen::Vector3d::Zero());
+  for (std::size_t n = 0; n < sag.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      if (const int at = system.dofs.index(surface.node_number[n], axis); at >= 0) sag[n][axis] = u[at];
+  return sag;
 }
 
 /// Columns of K^-1 without moments, a block at a time: few entries of a shell's factor stand against many
@@ -138,6 +164,7 @@ Archive precompute(const ModalShellSpec& body, const ShellMesh& mesh, const Prog
   add_modes(body, system, lumped_shell_mass(mesh, material_of(body)), archive);
   watch.lap(fmt::format("{} modes", body.shell.modes));
   add_compliance(system.stiffness, system.dofs, archive);
+  archive.sag = sag_of(body, mesh, system, archive.surface);
   watch.lap("compliance");
   return archive;
 } catch (const std::bad_alloc&) {

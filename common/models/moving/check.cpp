@@ -11,6 +11,7 @@
 #include "common/contact/tool_contacts.hpp"
 #include "common/dynamics/condensed_part.hpp"
 #include "common/mesh/cut_mesh.hpp"
+#include "common/models/check/loads_check.hpp"
 #include "common/models/moving/predict.hpp"
 #include "common/models/moving/static_problem.hpp"
 #include "common/models/moving_kind.hpp"
@@ -144,7 +145,8 @@ void check_moving(const MovingSpec& body, const MovingKind& kind, const CheckSet
   else
     report.left_out.emplace_back("does not tear by itself");
   report.left_out.emplace_back("no archive in the haptic node");
-  report.sags = !d.gravity.isZero();
+  say_loads(body, Eigen::Vector3d::Zero(), settings, report);
+  report.sags = is_loaded(body);
   if (kind.own_mesh && report.sags) report.left_out.emplace_back("no sag is told of two meshes that are joined");
   report.memory = memory(body, kind, settings, archive);
   add_near_field("deform_node", settings, archive.surface, true, report);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "common/fem/body_loads.hpp"
 #include "common/fem/condensation.hpp"
 #include "common/fem/stopwatch.hpp"
 #include "common/mesh/mesh_file.hpp"
@@ -19,6 +20,18 @@ std::vector<int> index_of_nodes(const SurfaceMap& surface, std::size_t nodes) {
   std::vector<int> index(nodes, -1);
   for (int i = 0; i < surface.size(); ++i) index[surface.node_number[i]] = i;
   return index;
+}
+
+/// On the nodes of the moving tetrahedra. `index`: of each mesh node in the archive, or -1.
+void add_dead_loads(const SolidSpec& body, const TetMesh& mesh, const std::vector<int>& index, Archive& archive) {
+  if (body.loads.empty()) return;
+  std::vector<char> moves(archive.surface.size(), 0);
+  for (const auto& t : archive.tetrahedra)
+    for (const int node : t) moves[node] = 1;
+  archive.load.assign(archive.surface.size(), Eigen::Vector3d::Zero());
+  const auto load = force_vector(body_loads(body, mesh), mesh.nodes);
+  for (std::size_t node = 0; node < load.size(); ++node)
+    if (index[node] >= 0 && moves[index[node]]) archive.load[index[node]] = load[node];
 }
 
 }  // namespace
@@ -48,6 +61,7 @@ std::vector<int> add_moving_part(const SolidSpec& body, const TetMesh& mesh, con
     const auto& t = mesh.tetrahedra[e];
     archive.tetrahedra.push_back({index[t[0]], index[t[1]], index[t[2]], index[t[3]]});
   }
+  add_dead_loads(body, mesh, index, archive);
   archive.parts.dynamic = true;
   archive.material_of_element = materials_of(materials, elements).of_element;
   for (const auto& material : materials.materials) archive.density.push_back(material.density);

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "common/contact/patch/patch_parts.hpp"
-#include "common/fem/lumped_mass.hpp"
+#include "common/fem/body_loads.hpp"
 #include "common/models/moving/tissue_steps.hpp"
 #include "common/models/moving/tried_contact.hpp"
 #include "common/tool/instrument.hpp"
@@ -154,23 +154,22 @@ void say_steps(const MovingSpec& body, DynamicOrgan& organ, const Archive& archi
 }
 
 void say_sag(const MovingSpec& body, const StaticProblem& problem, CheckReport& report) {
-  const Eigen::Vector3d& gravity = body.dynamic.gravity;
-  if (gravity.isZero()) return;
-  std::vector<Eigen::Vector3d> weight;
-  for (const double mass : lumped_mass(problem.mesh, problem.materials)) weight.emplace_back(mass * gravity);
-  const std::vector<Eigen::Vector3d> u = solve_loads(problem, weight).displacement;
+  if (!is_loaded(body)) return;
+  StaticLoads loads = body_loads(body, problem.mesh);
+  loads.gravity = body.dynamic.gravity;
+  const std::vector<Eigen::Vector3d> u = solve_direct(problem, {}, loads).displacement;
   const auto most = std::ranges::max_element(u, {}, [](const Eigen::Vector3d& x) { return x.norm(); });
   Eigen::Vector3d low = problem.mesh.nodes[0], high = low;
   for (const Eigen::Vector3d& p : problem.mesh.nodes) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double diagonal = (high - low).norm(), share = most->norm() / diagonal;
   report.say(
-      fmt::format("  sag: {:.3g} mm at node {} at rest under its gravity, {:.2g} % of its diagonal, by {} "
+      fmt::format("  sag: {:.3g} mm at node {} at rest under its loads and weight, {:.2g} % of its diagonal, by {} "
                   "elements",
                   1e3 * most->norm(), most - u.begin(), 100 * share,
                   problem.materials.nodal_strain.empty() ? "linear" : "its own"));
   if (share > kMuchSag)
     report.warnings.push_back(
-        fmt::format("body '{}' sinks by {:.2g} of its diagonal under its own gravity: linear "
+        fmt::format("body '{}' sinks by {:.2g} of its diagonal under its loads and weight: linear "
                     "tissue is right for small strains alone",
                     body.name, share));
 }

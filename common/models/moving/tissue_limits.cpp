@@ -40,6 +40,7 @@ TissueLimits::TissueLimits(const std::vector<Archive>& archives, std::span<const
         body.stiffness[nodes[v]] += shape.volume * modulus * shape.gradient.row(v).squaredNorm();
       weight_ += shape.volume * a.density[m] * gravity[b].norm();
     }
+    for (const Eigen::Vector3d& force : a.load) weight_ += force.norm();
     const auto plane_modulus = [&](std::size_t m) { return a.young[m] / (1 - a.poisson[m] * a.poisson[m]); };
     body.modulus = plane_modulus(0);
     for (std::size_t m = 0; m < a.young.size(); ++m) contact_modulus_ = std::max(contact_modulus_, plane_modulus(m));

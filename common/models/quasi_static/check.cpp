@@ -13,6 +13,7 @@
 #include "common/fem/fine_space.hpp"
 #include "common/fem/specimen.hpp"
 #include "common/mesh/mesh_file.hpp"
+#include "common/models/check/loads_check.hpp"
 #include "common/models/quasi_static/compress.hpp"
 #include "common/models/quasi_static/nonlinear.hpp"
 #include "common/models/quasi_static/precompute.hpp"
@@ -164,6 +165,7 @@ MemoryPart memory_of_past(const QuasiStaticSpec& body, const SurfaceMap& surface
 void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report) {
   const CheckedSolid solid = load_solid(body);
   check_solid(body, QuasiStaticSpec::kKind, solid, settings, report);
+  say_loads(body, body.gravity, settings, report);
   say_offline(body, solid.mesh, solid.surface.size(), report);
   say_patches(settings, body.name, !body.relaxation, report);
   say_nonlinear(body, settings, report);

@@ -7,6 +7,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "common/fem/body_loads.hpp"
 #include "common/fem/fine_problem.hpp"
 #include "common/fem/specimen.hpp"
 #include "common/fem/stopwatch.hpp"
@@ -47,6 +48,22 @@ PrecomputeCost add_compressed(const QuasiStaticSpec& body, const StaticProblem& 
   return {columns.flops(), false};
 }
 
+/// How its loads and its weight move the surface.
+std::vector<Eigen::Vector3d> sag_of(const QuasiStaticSpec& body, const StaticProblem& problem,
+                                    const SurfaceMap& surface) {
+  StaticLoads loads = body_loads(body, problem.mesh);
+  loads.gravity = body.gravity;
+  if (loads.empty()) return {};
+  const auto& [mesh, materials, dofs] = problem;
+  const StaticSolution rest =
+      is_finer(body.offline)
+          ? solve_direct(make_fine_problem(mesh, *body.offline, materials, dofs, body.name), {}, loads)
+          : solve_direct(problem, {}, loads);
+  std::vector<Eigen::Vector3d> sag;
+  for (const int node : surface.node_number) sag.push_back(rest.displacement[node]);
+  return sag;
+}
+
 }  // namespace
 
 Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMesh* specimen, const Progress& progress,
@@ -66,6 +83,7 @@ Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMe
                                    ? add_compressed(body, problem, progress, archive)
                                    : add_dense(body, problem, route, progress, archive);
   if (cost) *cost = spent;
+  archive.sag = sag_of(body, problem, surface);
   if (specimen) {
     Stopwatch specimen_watch(progress);
     const auto slopes = press_specimen(*specimen, body.material, body.offline);

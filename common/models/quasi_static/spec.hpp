@@ -84,6 +84,7 @@ const Law* law_of(const std::optional<Nonlinear>& nonlinear) {
 /// Linear elasticity, solved beforehand (TVCG99 sec. 4).
 struct QuasiStaticSpec : SolidSpec {
   static constexpr std::string_view kKind = "quasi_static";
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
   std::optional<Nonlinear> nonlinear;
   std::optional<Relaxation> relaxation;  ///< absent: forces do not depend on the rate
   std::optional<Offline> offline;        ///< absent: see offline_of()
@@ -91,6 +92,7 @@ struct QuasiStaticSpec : SolidSpec {
 
 inline void describe(Description& d, QuasiStaticSpec& b) {
   describe(d, static_cast<SolidSpec&>(b));
+  describe_weight(d, b.gravity);
   d.table({"nonlinear", "", "the quasi non-linear correction", Need::optional, Use::agreed, "linear"}, b.nonlinear);
   d.table({"relaxation", "", "how its moduli fall with time", Need::optional, Use::agreed, "does not relax"},
           b.relaxation);
@@ -124,8 +126,8 @@ std::unique_ptr<BodyPart> make_haptic_part(const QuasiStaticSpec& body, const Ar
 std::unique_ptr<BodyShape> make_shape(const QuasiStaticSpec& body, const Archive& archive,
                                       const StepSettings& settings);
 
-constexpr bool stores_inertia(const QuasiStaticSpec&) {
-  return false;
+inline bool stores_inertia(const QuasiStaticSpec& body) {
+  return !body.gravity.isZero(0);
 }
 
 void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report);
