@@ -46,13 +46,17 @@ py::array_t<T> view_of(const std::vector<T>& values, const py::object& owner) {
 }
 /// The same of vectors, one a row.
 template <class Vector>
-auto view_of_rows(const std::vector<Vector>& vectors, const py::object& owner) {
+auto view_of_rows(std::span<const Vector> vectors, const py::object& owner) {
   using T = typename Vector::value_type;
   constexpr py::ssize_t kColumns = sizeof(Vector) / sizeof(T);
   const T* first = vectors.empty() ? nullptr : vectors.front().data();
   py::array_t<T> array(std::vector<py::ssize_t>{static_cast<py::ssize_t>(vectors.size()), kColumns}, first, owner);
   array.attr("setflags")(py::arg("write") = false);
   return array;
+}
+template <class Vector>
+auto view_of_rows(const std::vector<Vector>& vectors, const py::object& owner) {
+  return view_of_rows(std::span<const Vector>(vectors), owner);
 }
 
 }  // namespace palpate::python

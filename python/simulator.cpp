@@ -101,14 +101,12 @@ class Simulator {
   }
 
   py::array_t<double> surface(const std::string& body) {
-    const sim::SurfaceView shown = lock_step_.simulator().surface(number_of(body));
+    const sim::SurfaceView seen = shown(body);
     std::vector<Eigen::Vector3d> places;
-    for (const Eigen::Vector3f& p : shown.position) places.push_back(shown.origin + p.cast<double>());
+    for (const Eigen::Vector3f& p : seen.position) places.push_back(seen.origin + p.cast<double>());
     return rows_of(std::span(std::as_const(places)));
   }
-  py::array_t<float> normals(const std::string& body) {
-    return rows_of(lock_step_.simulator().surface(number_of(body)).normal);
-  }
+  sim::SurfaceView shown(const std::string& body) { return lock_step_.simulator().surface(number_of(body)); }
   const std::vector<std::array<int, 3>>& triangles(const std::string& body) const {
     return archives_[number_of(body)].surface.triangles;
   }
@@ -175,7 +173,29 @@ void bind_simulator(py::module_& module) {
            "bounded\n"
            "speed.")
       .def("surface", &Simulator::surface, py::arg("body") = "", "(n, 3) [m] of each node of a body's surface map")
-      .def("normals", &Simulator::normals, py::arg("body") = "", "(n, 3) float32, unit, outward")
+      .def(
+          "origin",
+          [](Simulator& s, const std::string& body) {
+            const Eigen::Vector3d at = s.shown(body).origin;
+            return array_of(std::array{at.x(), at.y(), at.z()});
+          },
+          py::arg("body") = "", "(3) [m] a point near the body, from which surface_view() counts")
+      .def(
+          "surface_view",
+          [](const py::object& self, const std::string& body) {
+            return view_of_rows(self.cast<Simulator&>().shown(body).position, self);
+          },
+          py::arg("body") = "",
+          "(n, 3) float32 [m] of the same nodes from origin() on: a view, read-only, of the simulator's memory. It "
+          "shows "
+          "the\n"
+          "step after which it, surface() or normals() was last asked for; copy what is to stay")
+      .def(
+          "normals",
+          [](const py::object& self, const std::string& body) {
+            return view_of_rows(self.cast<Simulator&>().shown(body).normal, self);
+          },
+          py::arg("body") = "", "(n, 3) float32, unit, outward; a view like surface_view()")
       .def(
           "triangles",
           [](const py::object& self, const std::string& body) {

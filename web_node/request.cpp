@@ -52,10 +52,11 @@ void Request::answer() {
   const std::string_view path = host_.door().path(view(request.target()), host);
   if (path.empty()) return refuse(http::status::forbidden, "not for you\n");
   if (path != "/live") return serve(path);
+  // Said to all, since a browser tells its page nothing of a WebSocket that was refused.
+  if (!host_.room()) return refuse(http::status::service_unavailable, "as many watch as can\n");
   if (!beast::websocket::is_upgrade(request)) return refuse(http::status::bad_request, "a WebSocket is here\n");
   if (!Door::same_origin(view(request[http::field::origin]), host))
     return refuse(http::status::forbidden, "not from that page\n");
-  if (!host_.room()) return refuse(http::status::service_unavailable, "as many watch as can\n");
   host_.upgrade(stream_.release_socket(), request);
 }
 

@@ -6,8 +6,10 @@
 namespace palpate {
 
 void open_log(const std::string& program) {
-  spdlog::set_default_logger(spdlog::stderr_color_mt(program));
-  spdlog::set_pattern("%H:%M:%S.%e %n: %v");
+  auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+  sink->set_color(spdlog::level::info, "");
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>(program, std::move(sink)));
+  spdlog::set_pattern("%H:%M:%S.%e %n: %^%v%$");  // warnings in colour, on a terminal
 }
 
 void log_warnings_alone() {

@@ -42,6 +42,7 @@ MotionMaker::MotionMaker(const Tool& tool, const SurfaceMap& map, const Rehearsa
       reach_(reach_of(tool)),
       radius_(abilities_of(tool).radius),
       deepest_press_(diagonal_of(map.position)),
+      has_jaws_(abilities_of(tool).turning || abilities_of(tool).closing),
       widest_jaws_(widest_jaws_of(tool)) {
   for (std::size_t t = 0; t < map.triangles.size(); ++t)
     if (std::ranges::all_of(map.triangles[t], [&](int n) { return n < map.touchable; }))
@@ -156,6 +157,8 @@ void MotionMaker::look_at(const MotionStep& step) const {
         fmt::format("'{}': a depth of {:.4g} m is more than the body's box has from corner to corner, {:.3g} m; was "
                     "it meant in mm?",
                     step.text, step.value, deepest_press_));
+  if (step.kind == Kind::grip && !has_jaws_)
+    throw std::runtime_error(fmt::format("'{}': this tool has no jaws", step.text));
   if (step.kind == Kind::grip && widest_jaws_ && step.value > *widest_jaws_)
     throw std::runtime_error(
         fmt::format("'{}': the jaws of this tool open from 0 to {} rad", step.text, *widest_jaws_));

@@ -64,7 +64,8 @@ class MotionMaker {
   Trocar trocar_;
   double reach_;  ///< [m] from the tip frame's origin to where the tool touches first
   double radius_;
-  double deepest_press_;               ///< [m] the body's box from corner to corner
+  double deepest_press_;  ///< [m] the body's box from corner to corner
+  bool has_jaws_;
   std::optional<double> widest_jaws_;  ///< [rad] of jaws that turn
   std::optional<MotionRows> rows_;     ///< empty before the first place
   std::optional<SurfacePlace> place_;  ///< where it is

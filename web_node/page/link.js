@@ -27,11 +27,19 @@ export class Link {
       else this.on.binary(data);
     };
     socket.onclose = () => {
+      const refused = !this.socket;
       this.socket = undefined;
       this.on.close();
+      if (refused) this.askWhy();
       setTimeout(() => this.connect(), this.wait);
       this.wait = Math.min(2 * this.wait, 2000);
     };
+  }
+
+  // Of a WebSocket that was refused a browser does not say why.
+  async askWhy() {
+    const answer = await fetch('live', { cache: 'no-store' }).catch(() => undefined);
+    if (answer?.status === 503 && !this.socket) this.on.refused((await answer.text()).trim());
   }
 
   get open() {

@@ -34,6 +34,7 @@ class App {
     this.link = new Link({
       open: () => this.panel.link('connected', true),
       close: () => this.lost(),
+      refused: (why) => this.panel.refused(why),
       text: (message) => this.text(message),
       binary: (buffer) => this.binary(buffer),
     });

@@ -114,6 +114,10 @@ export class Panel {
     this.link('no connection; trying again', false);
   }
 
+  refused(why) {
+    this.link(`${why}; trying again`, false);
+  }
+
   status(status, page) {
     const rates = Object.fromEntries(status.nodes.map((node) => [node.role, node.rate_hz]));
     const lines = [['haptic loop', rates.haptic && `${rates.haptic.toFixed(0)} Hz`],
