@@ -77,7 +77,8 @@ void TwoNodes::tick() {
   if (under_way_.size() <= delay_) return;
   // What is told of another haptic node's steps is none of this one's.
   for (const LocalContactModel& model : under_way_.front())
-    if (haptic_ && model.tool_run == haptic_run_ && model.tool_step < haptic_->steps()) haptic_->consume(model);
+    if (haptic_ && model.tool_run == haptic_run_ && model.tool_step < haptic_->steps())
+      refused_ += !haptic_->consume(model);
   under_way_.pop_front();
 }
 

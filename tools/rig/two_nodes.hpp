@@ -41,6 +41,7 @@ class TwoNodes {
   /// [N] on a tool, as its hand gets it: none without a haptic node.
   Eigen::Vector3d force(int tool) const;
   const DynamicWorld& world() const { return *world_; }
+  int refused() const { return refused_; }  ///< models of the tissue that the haptic node did not take
 
  private:
   enum class Phase { gone, settling, moving };
@@ -60,6 +61,7 @@ class TwoNodes {
   std::vector<LocalContactModel> model_;                  ///< the newest, per tool
   std::deque<std::vector<LocalContactModel>> under_way_;  ///< a tick each
   std::size_t delay_ = 0;
+  int refused_ = 0;
   std::uint64_t haptic_run_ = 0, tissue_run_ = 0;
   Phase phase_ = Phase::gone;
 };

@@ -38,13 +38,14 @@ class TissuePatches {
                 const StepSettings& settings);
 
   /// What presses no more though it was not lifted: what it did to nodes is added to `forces`, and `leave` is told of a
-  /// contact that was its own.
+  /// contact that was its own. Of both the share that `borne` says of a contact and what it did to nodes.
   struct Loose {
     std::vector<PatchForce>& forces;
+    std::function<double(const TouchContact&, std::span<const PatchForce>)> borne;
     std::function<void(const TouchContact&)> leave;
   };
   /// Once a tick: lays the patches of what is near; none of a tool that grasps the tissue. Cells that have gone over a
-  /// rim come loose.
+  /// rim, or have hopped, come loose.
   void find(std::span<const MovingTool> tools, const std::function<bool(int tool)>& grasps, const Loose& loose);
   /// Whether one is laid.
   bool laid() const;
@@ -91,7 +92,7 @@ class TissuePatches {
     OfCells depth{};                                           ///< [m] in the last step
     bool relaid = false;                                       ///< no step has been done since it was laid
     bool cut = false;                                          ///< what it lay on has gone
-    double approach = 0;                                       ///< [m] its way over the tissue in this tick
+    double approach = 0;                                       ///< [m] its way in this tick
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero();         ///< [N s] of the tick, on the tissue
     TouchContact contact;                                      ///< of the last tick
   };

@@ -68,11 +68,16 @@ class TissueTouch {
   };
 
   bool passed(const TouchContact& contact, const MovingTool& tool) const;
+  using Loose = TissuePatches::Loose;
+  using Borne = decltype(Loose::borne);
   template <class Gone>
-  void drop_where(Gone&& gone);
+  void drop_where(Gone&& gone, const Borne& borne);
+  double borne(const TouchContact& contact, std::span<const PatchForce> forces) const;
+  bool joined(int node) const;
+  Eigen::Vector3d fading_by(const ToolPoint& by) const;
   void leave(const TouchContact& contact);
-  TissuePatches::Loose loose() {
-    return {loose_, [this](const TouchContact& c) { leave(c); }};
+  Loose loose(Borne borne) {
+    return {loose_, std::move(borne), [this](const TouchContact& c) { leave(c); }};
   }
   void tell(const Leaver& leaver);
   void fade(std::span<const MovingTool> tools);
