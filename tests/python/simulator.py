@@ -67,6 +67,7 @@ for number in math.nan, math.inf:
 for documented in palpate.Scene, palpate.Device, palpate.Simulator, palpate.Simulator.step:
     assert documented.__doc__, documented
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell in the background ignores
 threading.Timer(0.5, signal.raise_signal, [signal.SIGINT]).start()
 try:
     simulator.follow(10**9)
@@ -80,3 +81,14 @@ while not simulator.contacts(0):
 contact = simulator.contacts(0)[0]
 for name, length in ("nodes", 3), ("weights", 3), ("normal", 3), ("force", 3):
     assert isinstance(contact[name], np.ndarray) and contact[name].shape == (length,), name
+
+view = simulator.surface_view()
+seen = view.copy()
+simulator.follow(300)
+assert np.array_equal(simulator.surface(), simulator.origin() + view), "a call brings it up to the last step"
+assert not np.array_equal(view, seen), "of the same memory"
+assert not view.flags.writeable and not simulator.normals().flags.writeable
+simulator.follow(50)
+at = simulator.surface()
+del simulator
+assert np.allclose(at - view, at[0] - view[0], atol=1e-6), "which a view keeps alive"
