@@ -186,10 +186,8 @@ void bind_simulator(py::module_& module) {
             return view_of_rows(self.cast<Simulator&>().shown(body).position, self);
           },
           py::arg("body") = "",
-          "(n, 3) float32 [m] of the same nodes from origin() on: a view, read-only, of the simulator's memory. It "
-          "shows "
-          "the\n"
-          "step after which it, surface() or normals() was last asked for; copy what is to stay")
+          "(n, 3) float32 [m] of the same nodes from origin() on: a view, read-only, of the simulator's memory.\n"
+          "A call of it, surface() or normals() brings it up to the last step; copy what is to stay")
       .def(
           "normals",
           [](const py::object& self, const std::string& body) {
