@@ -103,10 +103,14 @@ Solved solve_by_direct(const Body& body, const SolveArguments& arguments) {
   table.node.resize(mesh.nodes.size());
   std::iota(table.node.begin(), table.node.end(), 0);
   table.position = mesh.nodes;
+  if (!problem.rest.empty()) {
+    const std::vector<Eigen::Vector3d> sag = problem.solve({}, problem.rest).displacement;
+    for (std::size_t n = 0; n < sag.size(); ++n) table.position[n] += sag[n];
+  }
   table.tetrahedra = mesh.tetrahedra;
   const auto triangles = extract_surface(mesh).triangles;
   const auto constraints =
-      constraints_of(body, arguments, static_cast<int>(mesh.nodes.size()), mesh.nodes, table.node, triangles);
+      constraints_of(body, arguments, static_cast<int>(mesh.nodes.size()), table.position, table.node, triangles);
   const auto solution = problem.solve(constraints, loads_of(body, arguments, static_cast<int>(mesh.nodes.size())));
   table.displacement = solution.displacement;
   table.force = solution.force;

@@ -8,6 +8,11 @@
 #include "common/mesh/surface.hpp"
 
 namespace palpate {
+namespace {
+
+constexpr double kMostForce = 1e9;  // [N], far above what tissue bears, so that nothing overflows
+
+}  // namespace
 
 StaticLoads body_loads(const MeshedSpec& body, const std::vector<std::array<int, 3>>& triangles,
                        const SelectNodes& select) {
@@ -22,6 +27,8 @@ StaticLoads body_loads(const MeshedSpec& body, const std::vector<std::array<int,
       if (on.empty()) throw std::runtime_error(place + ": none of its nodes make a triangle of the surface");
       loads.pressures.insert(loads.pressures.end(), on.begin(), on.end());
     } else if (!load.force.isZero(0)) {
+      if (const double most = load.force.cwiseAbs().maxCoeff(); !(most < kMostForce))
+        throw std::runtime_error(fmt::format("{}: a force of {:.3g} N, more than there is", place, most));
       for (const int node : nodes) loads.nodes.push_back({node, load.force / static_cast<double>(nodes.size())});
     }
   }

@@ -12,6 +12,7 @@ namespace palpate {
 struct DirectProblem {
   TetMesh mesh;
   std::function<StaticSolution(const std::vector<Constraint>&, const StaticLoads&)> solve;
+  StaticLoads rest = {};  ///< under which it is in the shape from which displacements count
 };
 
 /// Of tetrahedra.

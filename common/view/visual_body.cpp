@@ -5,6 +5,7 @@
 
 #include "common/files/png_file.hpp"
 #include "common/mesh/near_origin.hpp"
+#include "common/mesh/visual_shape.hpp"
 
 namespace palpate {
 namespace {
@@ -14,16 +15,27 @@ std::array<int, 3> sorted(std::array<int, 3> t) {
   return t;
 }
 
+/// It lies about the mesh, from which loads have moved the body. `rest`: where they have its nodes.
+void sag(VisualMesh& visual, const Archive& archive, const std::vector<Eigen::Vector3d>& rest) {
+  std::vector<Eigen::Vector3d> of_mesh = rest;
+  for (std::size_t n = 0; n < rest.size(); ++n) of_mesh[n] -= archive.sag[n];
+  std::vector<Eigen::Vector3f> nodes;
+  for (const Eigen::Vector3d& x : rest) nodes.push_back(x.cast<float>());
+  VisualShape shape(visual, bind_visual(visual.position, of_mesh, archive.surface.triangles, archive.tetrahedra),
+                    of_mesh);
+  shape.place(nodes);
+  visual.position = shape.position();
+}
+
 }  // namespace
 
 std::optional<VisualBody> load_visual(const Body& body, const Archive& archive, const Eigen::Vector3d& origin) {
   const VisualSpec* spec = visual_of(body);
   if (!spec) return {};
   VisualBody visual{load_visual_mesh(*spec, origin), {}, {}};
-  std::vector<Eigen::Vector3d> of_mesh = archive.surface.position;  // about which the visual surface lies
-  for (std::size_t n = 0; n < archive.sag.size(); ++n) of_mesh[n] -= archive.sag[n];
-  visual.binding =
-      bind_visual(visual.mesh.position, counted_from(origin, of_mesh), archive.surface.triangles, archive.tetrahedra);
+  const std::vector<Eigen::Vector3d> rest = counted_from(origin, archive.surface.position);
+  if (!archive.sag.empty()) sag(visual.mesh, archive, rest);
+  visual.binding = bind_visual(visual.mesh.position, rest, archive.surface.triangles, archive.tetrahedra);
   if (!spec->texture.empty()) visual.texture = read_png_bytes(spec->texture, kMaxTextureSide);
   return visual;
 }

@@ -1,14 +1,21 @@
 // Dead loads and weight of a scene's bodies: what each kind of tissue makes of them is the static solution.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <fstream>
 
 #include "common/archive/static_solve.hpp"
 #include "common/fem/body_loads.hpp"
+#include "common/mesh/mesh_file.hpp"
 #include "common/mesh/shell_generators.hpp"
 #include "common/mesh/surface.hpp"
 #include "common/models/modal_shell/precompute.hpp"
 #include "common/models/quasi_static/precompute.hpp"
+#include "common/models/static_state.hpp"
 #include "common/models/tensor_mass/spec.hpp"
+#include "common/view/visual_body.hpp"
 #include "tests/dynamics/hybrid_bodies.hpp"
+#include "tests/tensors/files_for_tests.hpp"
 #include "tools/rig/kinds.hpp"
 
 namespace palpate {
@@ -101,6 +108,40 @@ TEST(DeadLoads, AreInTheShapeThatToolsTouchAndFollowYoung) {
   }
 }
 
+TEST(DeadLoads, MoveWhatIsDrawnInPlaceOfTheSurface) {
+  const TemporaryFolder folder;
+  const TetMesh mesh = block();
+  QuasiStaticSpec body = loaded_body();
+  body.visual = VisualSpec{.surface = folder / "block.obj"};
+  {
+    std::ofstream obj(body.visual->surface);
+    for (const Vector3d& x : mesh.nodes) obj << fmt::format("v {} {} {}\n", x.x(), x.y(), x.z());
+    for (const auto& [a, b, c] : extract_surface(mesh).triangles)
+      obj << fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
+  }
+  Archive archive = precompute(body, mesh, nullptr);
+  fit_archive(body, archive);
+  const auto visual = load_visual(body, archive, Vector3d::Zero());
+  ASSERT_TRUE(visual);
+  for (const Eigen::Vector3f& x : visual->mesh.position) {
+    double nearest = 1;
+    for (const Vector3d& node : archive.surface.position) nearest = std::min(nearest, (node - x.cast<double>()).norm());
+    EXPECT_LT(nearest, 1e-6);
+  }
+}
+
+TEST(DeadLoads, LeaveTheShapeFromWhichStaticStatesCount) {
+  const TetMesh mesh = block();
+  const TemporaryFolder folder;
+  QuasiStaticSpec body = loaded_body();
+  body.mesh = folder / "block.msh";
+  write_tet_mesh(mesh, body.mesh);
+  const DirectProblem problem = direct_problem(body);
+  const Archive archive = precompute(with_offline(body, mesh), mesh, nullptr);
+  EXPECT_LT(relative_difference(archive.sag, on_surface(archive.surface, problem.solve({}, problem.rest).displacement)),
+            1e-9);
+}
+
 TEST(DeadLoads, MoveAShellAsItsCompliance) {
   const ShellMesh mesh = make_tube(0.01, 0.06, 16, 8);
   ModalShellSpec loaded;
@@ -183,6 +224,9 @@ TEST(DeadLoads, AreRefusedWhereThereIsNothingToLoad) {
   load.where.box = Box{{5, 5, 5}, {6, 6, 6}};
   load.force = {0, 0, -1};
   EXPECT_EQ(error_of(load), "body 'organ': [[body.load]] 1 selects no node");
+  load.where.box = Box{{-1, -1, -1}, {1, 1, 1}};
+  load.force = {0, 1e300, 0};
+  EXPECT_EQ(error_of(load), "body 'organ': [[body.load]] 1: a force of 1e+300 N, more than there is");
   load.where = {{0}, {}, ""};
   load.force.setZero();
   load.pressure = 10;

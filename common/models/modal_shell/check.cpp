@@ -82,6 +82,7 @@ void check(const ModalShellSpec& body, const CheckSettings& settings, CheckRepor
   say_boundary_conditions(body, mesh, report);
   report.say(fmt::format("  material: young {} Pa, poisson {}, density {} kg/m3", body.material.young,
                          body.material.poisson, body.material.density));
+  shell_loads(body, mesh);  // which it refuses
   say_loads(body, body.gravity, settings, report);
   say_wall(body.shell, mesh, report);
   say_touched_by_mesh(settings, report);

@@ -53,9 +53,7 @@ std::vector<Index> numbers_of(const SurfaceMap& surface, const std::vector<Dof>&
 /// How its loads and its weight move the wall.
 std::vector<Eigen::Vector3d> sag_of(const ShellSpec& body, const ShellMesh& mesh, const ShellSystem& system,
                                     const SurfaceMap& surface) {
-  const StaticLoads loads = body_loads(body, mesh.triangles, [&](const Selector& where, const std::string& place) {
-    return select_nodes(mesh, where, place);
-  });
+  const StaticLoads loads = shell_loads(body, mesh);
   if (loads.empty() && body.gravity.isZero(0)) return {};
   const auto force = force_vector(loads, mesh.nodes);
   const auto mass = lumped_shell_mass(mesh, material_of(body));
@@ -136,6 +134,11 @@ SurfaceMap make_surface_map(const ShellSpec& body, const ShellMesh& mesh, const 
   return map;
 }
 
+StaticLoads shell_loads(const ShellSpec& body, const ShellMesh& mesh) {
+  return body_loads(body, mesh.triangles,
+                    [&](const Selector& where, const std::string& place) { return select_nodes(mesh, where, place); });
+}
+
 ShellSystem shell_system(const ModalShellSpec& body, const ShellMesh& mesh, const std::string& where) {
   auto dofs = apply_boundary_conditions(mesh, body, where);
   check_shell(body, mesh, dofs, where);
@@ -159,12 +162,12 @@ Archive precompute(const ModalShellSpec& body, const ShellMesh& mesh, const Prog
   archive.surface = make_surface_map(body, mesh, system.dofs);
   archive.touchable_dofs = free_dofs(archive.surface, 0, archive.surface.touchable);
   archive.other_dofs = free_dofs(archive.surface, archive.surface.touchable, archive.surface.size());
+  archive.sag = sag_of(body, mesh, system, archive.surface);
   watch.lap("surface");
 
   add_modes(body, system, lumped_shell_mass(mesh, material_of(body)), archive);
   watch.lap(fmt::format("{} modes", body.shell.modes));
   add_compliance(system.stiffness, system.dofs, archive);
-  archive.sag = sag_of(body, mesh, system, archive.surface);
   watch.lap("compliance");
   return archive;
 } catch (const std::bad_alloc&) {

@@ -8,6 +8,7 @@
 
 #include "common/contact/patch/patch_parts.hpp"
 #include "common/fem/body_loads.hpp"
+#include "common/models/check/loads_check.hpp"
 #include "common/models/moving/tissue_steps.hpp"
 #include "common/models/moving/tried_contact.hpp"
 #include "common/tool/instrument.hpp"
@@ -18,7 +19,6 @@ namespace {
 
 constexpr int kTimed = 31;          // ticks whose median counts
 constexpr int kTimedSteps = 30;     // of one of them at most: a tick of many more is a multiple
-constexpr double kMuchSag = 0.1;    // of the diagonal: beyond it linear elements say little
 constexpr double kScripted = 1e-3;  // [s] between the places by which a motion's speed is told
 
 /// A triangle of what moves, far from what holds the body.
@@ -161,17 +161,9 @@ void say_sag(const MovingSpec& body, const StaticProblem& problem, CheckReport& 
   const auto most = std::ranges::max_element(u, {}, [](const Eigen::Vector3d& x) { return x.norm(); });
   Eigen::Vector3d low = problem.mesh.nodes[0], high = low;
   for (const Eigen::Vector3d& p : problem.mesh.nodes) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  const double diagonal = (high - low).norm(), share = most->norm() / diagonal;
-  report.say(
-      fmt::format("  sag: {:.3g} mm at node {} at rest under its loads and weight, {:.2g} % of its diagonal, by {} "
-                  "elements",
-                  1e3 * most->norm(), most - u.begin(), 100 * share,
-                  problem.materials.nodal_strain.empty() ? "linear" : "its own"));
-  if (share > kMuchSag)
-    report.warnings.push_back(
-        fmt::format("body '{}' sinks by {:.2g} of its diagonal under its loads and weight: linear "
-                    "tissue is right for small strains alone",
-                    body.name, share));
+  const bool linear = problem.materials.nodal_strain.empty();
+  say_sag(body.name, {most->norm(), static_cast<int>(most - u.begin()), (high - low).norm()},
+          linear ? ", by linear elements" : ", by its own elements", report);
 }
 
 void say_tried_contact(const MovingSpec& body, const MovingKind& kind, const CheckSettings& settings, double edge,

@@ -165,6 +165,7 @@ MemoryPart memory_of_past(const QuasiStaticSpec& body, const SurfaceMap& surface
 void check(const QuasiStaticSpec& body, const CheckSettings& settings, CheckReport& report) {
   const CheckedSolid solid = load_solid(body);
   check_solid(body, QuasiStaticSpec::kKind, solid, settings, report);
+  resting_loads(body, solid.mesh);  // which it refuses
   say_loads(body, body.gravity, settings, report);
   say_offline(body, solid.mesh, solid.surface.size(), report);
   say_patches(settings, body.name, !body.relaxation, report);

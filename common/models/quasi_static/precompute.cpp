@@ -51,8 +51,7 @@ PrecomputeCost add_compressed(const QuasiStaticSpec& body, const StaticProblem& 
 /// How its loads and its weight move the surface.
 std::vector<Eigen::Vector3d> sag_of(const QuasiStaticSpec& body, const StaticProblem& problem,
                                     const SurfaceMap& surface) {
-  StaticLoads loads = body_loads(body, problem.mesh);
-  loads.gravity = body.gravity;
+  const StaticLoads loads = resting_loads(body, problem.mesh);
   if (loads.empty()) return {};
   const auto& [mesh, materials, dofs] = problem;
   const StaticSolution rest =
@@ -79,11 +78,11 @@ Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMe
   watch.lap("surface");
 
   const StaticProblem problem{mesh, materials, dofs};
+  archive.sag = sag_of(body, problem, surface);
   const PrecomputeCost spent = form.value_or(form_of(surface.touchable)) == TensorForm::compressed
                                    ? add_compressed(body, problem, progress, archive)
                                    : add_dense(body, problem, route, progress, archive);
   if (cost) *cost = spent;
-  archive.sag = sag_of(body, problem, surface);
   if (specimen) {
     Stopwatch specimen_watch(progress);
     const auto slopes = press_specimen(*specimen, body.material, body.offline);
@@ -96,6 +95,12 @@ Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMe
   return archive;
 } catch (const std::bad_alloc&) {
   throw std::runtime_error(fmt::format("body '{}': not enough memory for its tensors", body.name));
+}
+
+StaticLoads resting_loads(const QuasiStaticSpec& body, const TetMesh& mesh) {
+  StaticLoads loads = body_loads(body, mesh);
+  loads.gravity = body.gravity;
+  return loads;
 }
 
 std::optional<TetMesh> load_specimen(const QuasiStaticSpec& body) {

@@ -1,6 +1,7 @@
 #pragma once
 #include "common/archive/archive.hpp"
 #include "common/fem/condensation.hpp"
+#include "common/fem/static_loads.hpp"
 #include "common/mesh/tet_mesh.hpp"
 #include "common/models/quasi_static/spec.hpp"
 
@@ -25,6 +26,9 @@ Archive precompute(const QuasiStaticSpec& body, const TetMesh& mesh, const TetMe
 
 /// The body with its offline_of(), on a mesh.
 QuasiStaticSpec with_offline(QuasiStaticSpec body, const TetMesh& mesh);
+
+/// Its loads and its weight, under which its shape rests. Throws std::runtime_error as body_loads() does.
+StaticLoads resting_loads(const QuasiStaticSpec& body, const TetMesh& mesh);
 
 /// The mesh of MeasuredLaw::specimen_mesh; empty without one.
 std::optional<TetMesh> load_specimen(const QuasiStaticSpec& body);

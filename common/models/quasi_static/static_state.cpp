@@ -38,6 +38,7 @@ double correct(const BodyNonlinear& of_body, const StaticField& state) {
 
 DirectProblem direct_problem(const QuasiStaticSpec& body) {
   DirectProblem problem = direct_problem(static_cast<const SolidSpec&>(body));
+  problem.rest = resting_loads(body, problem.mesh);
   const Offline offline = *with_offline(body, problem.mesh).offline;
   if (is_finer(offline))
     problem.solve = [&body, offline, mesh = problem.mesh](const auto& constraints, const auto& loads) {
