@@ -266,8 +266,9 @@ TEST_F(ToolsVerify, WhatTheRecorderDidNotHearOfTheLastStepsIsNotMissed) {
   EXPECT_EQ(without(last - 2).status, 0);
   const auto within = without(last - 100);
   EXPECT_EQ(within.status, 1);
-  EXPECT_NE(within.err.find(fmt::format("from step {}: its input is not in the log", last - 100)), std::string::npos)
-      << within.err;
+  // Up to the end, or to the next keyframe where there is one: the sentence is another.
+  EXPECT_NE(within.err.find(fmt::format("step {}", last - 100)), std::string::npos) << within.err;
+  EXPECT_NE(within.err.find("is not in the log"), std::string::npos) << within.err;
 }
 
 TEST_F(ToolsVerify, ATruncatedLogIsVerifiedUpToTheDamage) {
