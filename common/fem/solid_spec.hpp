@@ -20,9 +20,9 @@ struct Material {
 };
 
 /// Far above what there is, so that nothing that is made of them overflows.
-inline constexpr Range kYoungRange = above_up_to(0, 1e20);       ///< [Pa]; diamond has 1e12
-inline constexpr Range kDensityRange = above_up_to(0, 1e6);      ///< [kg/m^3]; osmium has 2.3e4
-inline constexpr Range kLoadRange = strictly_within(-1e9, 1e9);  ///< [Pa]
+inline constexpr Range kYoungRange = above_up_to(0, 1e20);           ///< [Pa]; diamond has 1e12
+inline constexpr Range kDensityRange = above_up_to(0, 1e6);          ///< [kg/m^3]; osmium has 2.3e4
+inline constexpr Range kPressureRange = strictly_within(-1e9, 1e9);  ///< [Pa]
 /// Positive definite elasticity that is not incompressible.
 inline constexpr Range kPoissonRange = strictly_within(-1, 0.5);
 
@@ -79,7 +79,7 @@ inline void describe(Description& d, LoadSpec& l) {
               "on the triangles of the surface whose corners are among these nodes, against their outward normals; "
               "below zero it pulls",
               Need::optional, Use::stored, "none"},
-             l.pressure, kLoadRange);
+             l.pressure, kPressureRange);
   d.require(d.given("force") != d.given("pressure"), "", "a [[body.load]] is either a 'force' or a 'pressure'");
 }
 

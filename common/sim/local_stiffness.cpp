@@ -173,11 +173,12 @@ LocalStiffness::Answer LocalStiffness::solve(const Question& question) {
         answer.compliance.block<3, 3>(3 * i, 3 * j) = joined_.part->compliance(answer.nodes[i], answer.nodes[j]);
   if (n == 0) return answer;
   const Left& left = left_after(question.removed);
-  const std::vector<std::int64_t> last = dof_order(left.dofs, moving_nodes(answer.nodes));
+  const std::vector<int> moving = moving_nodes(answer.nodes);
+  const std::vector<std::int64_t> last = dof_order(left.dofs, moving);
   const auto count = static_cast<Eigen::Index>(last.size());
   if (count == 0) return answer;
 
-  Factorisation factor(left.matrix, dof_order(left.dofs, interior_first_order(left.graph, moving_nodes(answer.nodes))));
+  Factorisation factor(left.matrix, dof_order(left.dofs, interior_first_order(left.graph, moving)));
   factor.factorise(left.matrix);
   Eigen::MatrixXd among = factor.trailing_factor(static_cast<int>(count));
   invert_from_cholesky(among);

@@ -16,7 +16,7 @@ std::array<int, 3> sorted(std::array<int, 3> t) {
 }
 
 /// It lies about the mesh, from which loads have moved the body. `rest`: where they have its nodes.
-void sag(VisualMesh& visual, const Archive& archive, const std::vector<Eigen::Vector3d>& rest) {
+void follow_loads(VisualMesh& visual, const Archive& archive, const std::vector<Eigen::Vector3d>& rest) {
   std::vector<Eigen::Vector3d> of_mesh = rest;
   for (std::size_t n = 0; n < rest.size(); ++n) of_mesh[n] -= archive.sag[n];
   std::vector<Eigen::Vector3f> nodes;
@@ -34,7 +34,7 @@ std::optional<VisualBody> load_visual(const Body& body, const Archive& archive, 
   if (!spec) return {};
   VisualBody visual{load_visual_mesh(*spec, origin), {}, {}};
   const std::vector<Eigen::Vector3d> rest = counted_from(origin, archive.surface.position);
-  if (!archive.sag.empty()) sag(visual.mesh, archive, rest);
+  if (!archive.sag.empty()) follow_loads(visual.mesh, archive, rest);
   visual.binding = bind_visual(visual.mesh.position, rest, archive.surface.triangles, archive.tetrahedra);
   if (!spec->texture.empty()) visual.texture = read_png_bytes(spec->texture, kMaxTextureSide);
   return visual;

@@ -142,7 +142,8 @@ TEST_F(SegmentCommand, LabelsAreWrittenWhereTheImageLiesAndOrganReadsThem) {
              "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 10 20 30\nElementSpacing = 0.9 0.9 1.2\n"
              "DimSize = 96 88 56\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" +
                  bytes);
-  if (segment("turned.mha -o none.mha" + kSeed).err.find("without ITK") != std::string::npos) GTEST_SKIP();
+  const std::string error = segment("turned.mha -o none.mha" + kSeed).err;
+  if (error.find("without ITK") != std::string::npos) GTEST_SKIP() << error;
   const LabelVolume plain = labels("thin.inr --neck 8" + kSeed, "plain.mha");
   // The seed's voxel 38,44,28 lies at (10 - 0.9 x 44, 20 + 0.9 x 38, 30 + 1.2 x 28) mm.
   for (const char* name : {"turned-labels.mha", "turned-labels.nrrd"}) {

@@ -105,17 +105,12 @@ double TissueTouch::borne(const TouchContact& c, std::span<const PatchForce> for
   const double size = c.force.squaredNorm();
   const double fading = size > 0 ? fading_by(c.tool_point()).dot(c.force) / size : 0.0;
   for (const auto& [node, force] : forces) {
-    const bool at_once = joined(node);
+    const bool at_once = still_ && still_->part().touches(node);  // forces on the quasi-static part do not fade
     along += at_once ? std::clamp(1 - fading, 0.0, 1.0) * force.squaredNorm()
-                     : -force.dot(model_.elastic_force(node) + model_.load(node));
+                     : -force.dot(model_.elastic_force(node) + model_.load(node) + model_.standing_load(node));
     squared += force.squaredNorm();
   }
   return squared > 0 ? std::clamp(along / squared, 0.0, 1.0) : 0.0;
-}
-
-// To the quasi-static part, or of it: forces on it do not fade.
-bool TissueTouch::joined(int node) const {
-  return still_ && (still_->part().owns(node) || std::ranges::binary_search(still_->part().connection(), node));
 }
 
 void TissueTouch::drop_tool(int tool) {

@@ -73,7 +73,6 @@ class TissueTouch {
   template <class Gone>
   void drop_where(Gone&& gone, const Borne& borne);
   double borne(const TouchContact& contact, std::span<const PatchForce> forces) const;
-  bool joined(int node) const;
   Eigen::Vector3d fading_by(const ToolPoint& by) const;
   void leave(const TouchContact& contact);
   Loose loose(Borne borne) {
