@@ -46,11 +46,9 @@ class DynamicModel : public Stateful<DynamicModel> {
   virtual Eigen::Vector3d velocity(int node) const = 0;      ///< [m/s]
   virtual void set_motion(int node, const Eigen::Vector3d& u, const Eigen::Vector3d& v) = 0;
   virtual double mass(int node) const = 0;  ///< [kg] lumped; 0 without tetrahedra
-  /// External force [N] on a node beside standing_load(); stays until set again.
+  /// External force [N] on a node, gravity included or not as the caller likes; stays until set again.
   virtual void set_load(int node, const Eigen::Vector3d& force) = 0;
   virtual Eigen::Vector3d load(int node) const = 0;
-  /// [N] On a node all the time: its weight under the model's gravity, and the mesh's dead load.
-  virtual Eigen::Vector3d standing_load(int node) const = 0;
   /// Elastic force [N] that the tissue exerts on a node at its present displacement: -dW/du.
   virtual Eigen::Vector3d elastic_force(int node) const = 0;
   /// Elastic and kinetic energy [J], coupling excluded.

@@ -32,7 +32,7 @@ LinearTissue<Scalar>::LinearTissue(const ElasticMesh& mesh, Integrator integrato
 template <class Scalar>
 void LinearTissue<Scalar>::write_response(int node) {
   const double total = mass(node);
-  const Eigen::Vector3d force = load_[node] + standing_load(node);
+  const Eigen::Vector3d force = load_[node] + own_mass_[node] * gravity_ + dead_[node];
   Scalar* response = &response_[kNodeWidth * row_[node]];
   for (int axis = 0; axis < 3; ++axis) {
     const bool moves = total > 0 && !fixed_[node][axis];

@@ -30,7 +30,6 @@ class LinearTissue : public DynamicModel {
   double mass(int node) const final { return own_mass_[node] + added_mass_[node]; }
   void set_load(int node, const Eigen::Vector3d& force) final;
   Eigen::Vector3d load(int node) const final { return load_[node]; }
-  Eigen::Vector3d standing_load(int node) const override { return own_mass_[node] * gravity_ + dead_[node]; }
   double energy() const final;
   int nodes() const final { return static_cast<int>(row_.size()); }
 

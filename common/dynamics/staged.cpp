@@ -128,7 +128,7 @@ void Staged<Scalar>::set_load(int node, const Eigen::Vector3d& force) {
 
 template <class Scalar>
 void Staged<Scalar>::sum_load(int node) {
-  const Eigen::Vector3d sum = load_[node] + standing_load(node);
+  const Eigen::Vector3d sum = load_[node] + mass_[node] * gravity_ + dead_[node];
   for (int axis = 0; axis < 3; ++axis) constant_[4 * node + axis] = static_cast<Scalar>(sum[axis]);
 }
 

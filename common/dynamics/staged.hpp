@@ -29,7 +29,6 @@ class Staged : public DynamicModel {
   double mass(int node) const final { return mass_[node] > 0 ? mass_[node] + coupled_mass_[node] : 0; }
   void set_load(int node, const Eigen::Vector3d& force) final;
   Eigen::Vector3d load(int node) const final { return load_[node]; }
-  Eigen::Vector3d standing_load(int node) const override { return mass_[node] * gravity_ + dead_[node]; }
   Eigen::Vector3d elastic_force(int node) const final;
   double energy() const final;
   int nodes() const final { return static_cast<int>(mass_.size()); }

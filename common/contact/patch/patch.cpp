@@ -22,7 +22,6 @@ Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep)
   normal_ = Vector3d::UnitZ();
   across_ = up_ = at_ = force_ = travel_ = Vector3d::Zero();
   cells_.resize(points);
-  was_at_.assign(points, Vector3d::Zero());
   cell_length_ = grid.edge();
   feet_.resize(grid.feet());
   foot_middle_.resize(grid.feet());

@@ -109,10 +109,7 @@ class Patch {
   /// Goes on from a force [N] on the tissue that the same patch had in an earlier life.
   void resume(const Eigen::Vector3d& force) { resumed_ = force; }
 
-  /// After lay(): whether the cell lies over other tissue than before, farther off than a part's radius: the part has
-  /// left what lay under it there, and comes anew onto what lies there now.
-  bool hopped(int cell) const { return (cells_[cell].at - was_at_[cell]).norm() > grid_.radius(); }
-  /// After lay(): the share of the last step's pressures whose cells have left the tissue, over a rim, or hopped.
+  /// After lay(): the share of the last step's pressures whose cells have left the tissue, over a rim.
   double lost() const { return lost_; }
 
   /// Whether the last pressures are the solution; else they are the last of a bounded number of tries.
@@ -258,7 +255,6 @@ class Patch {
   double passed_ = 0;                         ///< [m] likewise: the middle of what a segment has passed
   double above_ = 0;                          ///< [m] of lay()
   std::vector<Cell> cells_;                   ///< per cell of the grid
-  std::vector<Eigen::Vector3d> was_at_;       ///< [m] likewise: of the rest surface, before the last lay()
   std::vector<Foot> feet_;                    ///< per foot of the grid
   std::vector<Eigen::Vector2d> foot_middle_;  ///< [m] about the patch's middle, likewise: of what lies over tissue
   std::vector<int> nodes_;                    ///< under the patch

@@ -38,7 +38,6 @@ std::span<const int> Patch::lay(const Ground& ground, const Eigen::Isometry3d& b
                                 const Segment& axis, double above) {
   near_ = near(ground.surface, axis);
   nodes_.clear();
-  for (int p = 0; p < grid_.size(); ++p) was_at_[p] = cells_[p].at;
   for (Cell& cell : cells_) cell = {.gap = -std::numeric_limits<double>::infinity()};
   laid_at_ = axis.start;
   above_ = above;
@@ -58,7 +57,7 @@ std::span<const int> Patch::lay(const Ground& ground, const Eigen::Isometry3d& b
   at_ = place_of_force();
   lost_ = 0;
   for (int p = 0; p < grid_.size() && touches(); ++p)
-    if (!laid(p) || hopped(p)) lost_ += pressure_force_[p] / pressing_;
+    if (!laid(p)) lost_ += pressure_force_[p] / pressing_;
   if (nodes_.empty() || depth <= -above) lift();
   return nodes_;
 }

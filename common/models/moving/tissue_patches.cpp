@@ -126,7 +126,6 @@ void TissuePatches::leave_out(const CutMesh& topology) {
 
 // A share of what it did in the last tick.
 void TissuePatches::come_loose(const Part& own, double share, std::span<const PatchForce> forces, const Loose& loose) {
-  share *= loose.borne(own.contact, forces);
   for (const PatchForce& f : forces) loose.forces.push_back({f.node, share * f.force});
   TouchContact contact = own.contact;
   contact.force *= share;
@@ -325,16 +324,15 @@ void TissuePatches::press(Part& own, const MovingTool& tool, double dt) {
 }
 
 // What stands deeper than in the last step, beyond what the part and the tissue have moved, has come onto the tissue
-// whole: a cell over a rim, or that has hopped, or all of a part that is put into it. None of that is felt at once,
-// from twice as deep as they explain. The part's own way counts, not that over the tissue: as the patch goes over to
-// tissue that has moved otherwise, this is anything.
+// whole: a cell over a rim, or all of a part that is put into it. None of that is felt at once, from twice as deep as
+// they explain. The part's own way counts, not that over the tissue: as the patch goes over to tissue that has moved
+// otherwise, this is anything.
 void TissuePatches::ease_in(Part& own, std::span<const double> depth) const {
   double swing = 0;  // [m]
   for (const Vector3d& went : went_) swing = std::max(swing, std::abs(own.patch.normal().dot(went)));
   const double due = own.cut ? 0 : 2 * own.approach + swing;
   for (std::size_t p = 0; p < depth.size(); ++p) {
-    const double before = own.patch.hopped(static_cast<int>(p)) ? 0 : std::max(own.depth[p], 0.0);
-    const double deeper = depth[p] - before;
+    const double deeper = depth[p] - std::max(own.depth[p], 0.0);
     const double whole = std::min(deeper, 2 * std::max(deeper - due, 0.0));
     own.ease[p] = std::clamp(own.ease[p] + whole, 0.0, std::max(depth[p], 0.0));
   }

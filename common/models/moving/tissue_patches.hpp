@@ -38,14 +38,13 @@ class TissuePatches {
                 const StepSettings& settings);
 
   /// What presses no more though it was not lifted: what it did to nodes is added to `forces`, and `leave` is told of a
-  /// contact that was its own. Of both the share that `borne` says of a contact and what it did to nodes.
+  /// contact that was its own.
   struct Loose {
     std::vector<PatchForce>& forces;
-    std::function<double(const TouchContact&, std::span<const PatchForce>)> borne;
     std::function<void(const TouchContact&)> leave;
   };
   /// Once a tick: lays the patches of what is near; none of a tool that grasps the tissue. Cells that have gone over a
-  /// rim, or have hopped, come loose.
+  /// rim come loose.
   void find(std::span<const MovingTool> tools, const std::function<bool(int tool)>& grasps, const Loose& loose);
   /// Whether one is laid.
   bool laid() const;

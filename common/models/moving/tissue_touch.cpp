@@ -59,13 +59,12 @@ TissueTouch::TissueTouch(const Archive& archive, const ElasticMesh& mesh, const 
 std::span<const PatchForce> TissueTouch::find(std::span<const MovingTool> tools, double dt) {
   if (dt != dt_) follow_response(dt);
   loose_.clear();
-  const Loose loose = this->loose([this](const TouchContact& c, std::span<const PatchForce> f) { return borne(c, f); });
-  drop_where([&](const TouchContact& c) { return passed(c, tools[c.tool_point().tool]); }, loose.borne);
+  drop_where([&](const TouchContact& c) { return passed(c, tools[c.tool_point().tool]); });
   contacts_.look(tools);
   contacts_.collide(tools);
   if (patches_)
     patches_->find(
-        tools, [this](int tool) { return grasping(tool); }, loose);
+        tools, [this](int tool) { return grasping(tool); }, loose());
   return loose_;
 }
 
@@ -81,36 +80,15 @@ bool TissueTouch::passed(const TouchContact& c, const MovingTool& tool) const {
 
 // What they did to nodes is loose.
 template <class Gone>
-void TissueTouch::drop_where(Gone&& gone, const Borne& borne) {
+void TissueTouch::drop_where(Gone&& gone) {
   for (int i = static_cast<int>(law_.contacts().size()) - 1; i >= 0; --i) {
-    TouchContact c = law_.contacts()[i];
+    const TouchContact c = law_.contacts()[i];
     if (!gone(c)) continue;
     law_.remove(i);
-    std::array<PatchForce, 3> forces;
-    int count = 0;
     for (int v = 0; v < 3; ++v)
-      if (c.anchor.weights[v] != 0) forces[count++] = {c.anchor.nodes[v], c.anchor.weights[v] * c.force};
-    const double share = borne(c, std::span(forces).first(count));
-    c.force *= share;
-    for (const PatchForce& f : std::span(forces).first(count)) loose_.push_back({f.node, share * f.force});
+      if (c.anchor.weights[v] != 0) loose_.push_back({c.anchor.nodes[v], c.anchor.weights[v] * c.force});
     leave(c);
   }
-}
-
-// Of what a contact does to nodes, the share that the tissue pushes back with. The rest sets the tissue in motion: let
-// to fade, a blow of one tick would go on for many, and a part that comes down again meanwhile would strike harder each
-// time. Where the tissue has no inertia, the same part bears on it anew at once: what fades of earlier contacts counts.
-double TissueTouch::borne(const TouchContact& c, std::span<const PatchForce> forces) const {
-  double along = 0, squared = 0;
-  const double size = c.force.squaredNorm();
-  const double fading = size > 0 ? fading_by(c.tool_point()).dot(c.force) / size : 0.0;
-  for (const auto& [node, force] : forces) {
-    const bool at_once = still_ && still_->part().touches(node);  // forces on the quasi-static part do not fade
-    along += at_once ? std::clamp(1 - fading, 0.0, 1.0) * force.squaredNorm()
-                     : -force.dot(model_.elastic_force(node) + model_.load(node) + model_.standing_load(node));
-    squared += force.squaredNorm();
-  }
-  return squared > 0 ? std::clamp(along / squared, 0.0, 1.0) : 0.0;
 }
 
 void TissueTouch::drop_tool(int tool) {
@@ -163,15 +141,6 @@ void TissueTouch::tell(const Leaver& l) {
   told.at = told.position = l.at;
 }
 
-// [N] that is left of what the same part pressed in earlier ticks.
-Eigen::Vector3d TissueTouch::fading_by(const ToolPoint& by) const {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Leaver& l : leavers_)
-    if (l.by.tool == by.tool && l.by.part == by.part && l.ticks_left < fading_ticks_)
-      sum += static_cast<double>(l.ticks_left) / fading_ticks_ * l.force;
-  return sum;
-}
-
 void TissueTouch::fade(std::span<const MovingTool> tools) {
   std::erase_if(leavers_, [](Leaver& l) { return --l.ticks_left <= 0; });
   for (Leaver& l : leavers_) {
@@ -189,9 +158,8 @@ std::span<const PatchForce> TissueTouch::follow_cut(const CutMesh& topology) {
     return c.face && !c.grasped && surface_.facet_of(c.anchor.nodes) < 0;
   };
   loose_.clear();
-  const Loose loose = this->loose([](const TouchContact&, std::span<const PatchForce>) { return 1.0; });
-  drop_where(has_gone, loose.borne);
-  if (patches_) patches_->follow_cut(topology, loose);
+  drop_where(has_gone);
+  if (patches_) patches_->follow_cut(topology, loose());
   follow_response(dt_);
   return loose_;
 }

@@ -68,15 +68,11 @@ class TissueTouch {
   };
 
   bool passed(const TouchContact& contact, const MovingTool& tool) const;
-  using Loose = TissuePatches::Loose;
-  using Borne = decltype(Loose::borne);
   template <class Gone>
-  void drop_where(Gone&& gone, const Borne& borne);
-  double borne(const TouchContact& contact, std::span<const PatchForce> forces) const;
-  Eigen::Vector3d fading_by(const ToolPoint& by) const;
+  void drop_where(Gone&& gone);
   void leave(const TouchContact& contact);
-  Loose loose(Borne borne) {
-    return {loose_, std::move(borne), [this](const TouchContact& c) { leave(c); }};
+  TissuePatches::Loose loose() {
+    return {loose_, [this](const TouchContact& c) { leave(c); }};
   }
   void tell(const Leaver& leaver);
   void fade(std::span<const MovingTool> tools);
