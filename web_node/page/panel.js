@@ -30,10 +30,7 @@ const strongest = (task) => forceReading(task.force_max_n, Math.max(task.force_m
 export class Panel {
   said = [];  // by the nodes
   preparing = true;  // until the first picture is there
-
-  constructor() {
-    this.note();
-  }
+  connected = false;
 
   setScenery(scenery) {
     this.scenery = scenery;
@@ -154,7 +151,7 @@ export class Panel {
   }
 
   note() {
-    const picture = this.failure ?? (this.preparing && 'preparing the picture');
+    const picture = this.failure ?? (this.connected && this.preparing && 'preparing the picture');
     const late = this.late && 'this page is too slow to hold the tool: it stands and its force fades';
     byId('note').textContent = [picture, late, ...this.said].filter(Boolean).join('; ');
   }
@@ -183,6 +180,8 @@ export class Panel {
   link(words, good) {
     byId('link').textContent = words;
     byId('link').classList.toggle('bad', !good);
+    this.connected = good;
+    this.note();
   }
 
   ask(name) {
