@@ -284,7 +284,7 @@ def plot_course(rows, folder):
 
 def draw_course(rows, folder, name, of_displacement, of_force):
     keys = list(dict.fromkeys((r["method"], r["knob"], r["value"]) for r in rows))
-    keys = [k for k in keys if k[1] in ("scene", "model", "integrator", "step", "corotational", "modes", "particles")]
+    keys = [k for k in keys if k[1] in ("scene", "model", "integrator", "step", "element", "modes", "particles")]
     if not keys:
         return None
     figure, axes = plt.subplots(1, 2, figsize=(10, 4.6))

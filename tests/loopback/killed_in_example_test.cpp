@@ -35,9 +35,9 @@ constexpr int kFirst = 1500, kLast = 13000;  // steps between which it dies
 constexpr int kFirstStop = 800;              // step: the scalpel comes down on the plate
 constexpr int kStops = 6;                    // in a run of ten seconds
 constexpr auto kStop = 400ms;
-// Of the largest force undisturbed. What tissue that stood for a third of the time still holds of what lock step has
-// cut, and how far it has sunk, is another matter in each run: 0.4 to 1.9 measured; where its return was a kick, 27.
-constexpr double kOfStopped = 2.5;
+// [N] What tissue that stood for a quarter of the time still holds of what lock step has cut, and how far it has sunk,
+// is another matter in each run: 0.03 to 0.23 measured; where its return was a kick, 8.6.
+constexpr double kOfStopped = 0.3;
 constexpr int kCarried = 12800;  // step: what was cut is carried away
 constexpr int kHapticStops = 12;
 constexpr std::array kHapticStop{5ms, 20ms};  // by turns
@@ -250,8 +250,8 @@ TEST_F(StoppedInAnExample, ADeformationNodeThatStandsStillIsNoKickByTheLog) {
     });
     fmt::print("round {}: {:.3f} N undisturbed, by {:.3f} N a step; {:.3f} N, by {:.3f} N a step\n", round,
                undisturbed.force[0], undisturbed.change, felt.force[0], felt.change);
-    EXPECT_GT(undisturbed.force[0], 0.05) << round;
-    EXPECT_LE(felt.force[0], kOfStopped * undisturbed.force[0]) << round;
+    EXPECT_GT(felt.force[0], 0.01) << round;
+    EXPECT_LE(felt.force[0], kOfStopped) << round;
     EXPECT_LE(felt.change, kMaxStepChange * (1 + 1e-9)) << round;
     EXPECT_GT(felt.steps, static_cast<std::uint64_t>(kFirstStop + kStops * 1000)) << round;
   });

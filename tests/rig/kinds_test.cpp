@@ -21,6 +21,17 @@ TEST(BodyAsAnotherKind, KeepsWhatBothHaveInCommon) {
   EXPECT_EQ(as_kind<HybridSpec>(Body(as_kind<SpringMassSpec>(body))).hybrid.scale, 1);
 }
 
+TEST(BodyAsAnotherKind, OfSpringsHasNoElements) {
+  TensorMassSpec averaged = block_body<TensorMassSpec>(), turning = averaged;
+  averaged.dynamic.element = TetElement::nodal_strain;
+  turning.dynamic.corotational = true;
+  for (const TensorMassSpec& from : {averaged, turning}) {
+    const auto springs = as_kind<SpringMassSpec>(from);
+    EXPECT_TRUE(springs.dynamic.element == TetElement::linear && !springs.dynamic.corotational);
+    EXPECT_EQ(springs.dynamic.damping, from.dynamic.damping);
+  }
+}
+
 TEST(BodyOfAnyKind, SaysHowItMoves) {
   Body moving = block_body<SpringMassSpec>(), still = block_body<QuasiStaticSpec>();
   ASSERT_TRUE(find_motion(moving));

@@ -66,15 +66,22 @@ TEST_F(ToolsCheckDynamic, TakesWhatIsSetInPlaceOfTheFilesOwn) {
       {"--set is for a scene"});
 }
 
-TEST_F(ToolsCheckDynamic, WarnsOfAveragedStrainUnderATool) {
+TEST_F(ToolsCheckDynamic, WarnsOfAveragedStrainUnderAWideTool) {
   const std::string averaged = scene_ + "element = \"nodal_strain\"\n",
                     warning = "elements of averaged strain is up to";
-  const std::string tool = "[[tool]]\nname = \"probe\"\npivot = [0, 0, 0.5]\ntrajectory = \"" PALPATE_SOURCE
-                           "/scenes/trajectories/cylinder_hybrid.csv\"\n";
-  EXPECT_EQ(testing::run_program(check(averaged)).out.find(warning), std::string::npos) << "nothing presses it";
-  EXPECT_EQ(testing::run_program(check(scene_ + tool)).out.find(warning), std::string::npos);
-  const ProgramResult said = testing::run_program(check(averaged + tool));
-  EXPECT_NE(said.out.find(warning), std::string::npos) << said.out << said.err;
+  const auto tool = [](const std::string& radius) {
+    return "[[tool]]\nname = \"probe\"\npivot = [0, 0, 0.5]\nradius = " + radius +
+           "\ntrajectory = \"" PALPATE_SOURCE "/scenes/trajectories/cylinder_hybrid.csv\"\n";
+  };
+  const auto warns = [&](const std::string& scene) {
+    const ProgramResult said = testing::run_program(check(scene));
+    EXPECT_EQ(said.status, 0) << said.err;
+    return said.out.find(warning) != std::string::npos;
+  };
+  EXPECT_FALSE(warns(averaged)) << "nothing presses it";
+  EXPECT_FALSE(warns(averaged + tool("0.005"))) << "an edge is as wide";
+  EXPECT_FALSE(warns(scene_ + tool("0.03")));
+  EXPECT_TRUE(warns(averaged + tool("0.03")));
 }
 
 TEST_F(ToolsCheckDynamic, SaysTheSameAsJson) {

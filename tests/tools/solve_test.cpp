@@ -125,8 +125,8 @@ TEST_F(ToolsSolve, AKeyInPlaceOfTheFilesIsTaken) {
 }
 
 TEST_F(ToolsSolve, SpringsAreNotSolvedForAsElements) {
-  testing::expect_refusal(fmt::format("{} solve {}/scenes/plate_cut.toml --set body.model=spring_mass --force "
-                                      "40:0,0,-0.001 --method direct",
+  testing::expect_refusal(fmt::format("{} solve {}/scenes/plate_cut.toml --set body.model=spring_mass "
+                                      "--set body.dynamic.element=linear --force 40:0,0,-0.001 --method direct",
                                       program("palpate"), PALPATE_SOURCE),
                           {"spring_mass", "linear elasticity", "--dynamic"});
 }

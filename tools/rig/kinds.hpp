@@ -24,6 +24,12 @@ inline void take_over(SolidSpec& to, const SolidSpec& from) {
 inline void take_over(MovingSpec& to, const MovingSpec& from) {
   to = from;
 }
+// Springs are no elements.
+inline void take_over(SpringMassSpec& to, const MovingSpec& from) {
+  static_cast<MovingSpec&>(to) = from;
+  to.dynamic.element = TetElement::linear;
+  to.dynamic.corotational = false;
+}
 template <std::derived_from<NamedSpec> Spec>
 void take_over(Spec& to, const Spec& from) {
   to = from;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -21,6 +22,16 @@ namespace {
 
 constexpr double kRestDamping = 60;  // [1/s] where a rest state is wanted, which does not depend on it
 constexpr double kCourseSeconds = 0.25, kRampSeconds = 0.1;
+
+/// What tetrahedra can be.
+struct ElementChoice {
+  const char* name;
+  TetElement element;
+  bool turns;  ///< with the tissue
+};
+constexpr std::array<ElementChoice, 3> kElements{{{"linear", TetElement::linear, false},
+                                                  {"averaged strain", TetElement::nodal_strain, false},
+                                                  {"turning", TetElement::linear, true}}};
 
 /// A body's model on its mesh, ready to be pressed.
 struct Ready {
@@ -50,10 +61,11 @@ class Dynamic : public Method {
                      serves && own_});
     };
     add(own_ ? "scene" : "model", own_ ? "as it is" : model_.name, true, [](Body&) {});
-    const bool turning = motion.corotational;
-    if (model_.turns)
-      add("corotational", turning ? "off" : "on", true,
-          [turning](Body& body) { motion_of(body).corotational = !turning; });
+    for (const auto& [name, element, turns] : kElements)
+      if (model_.elements && (element != motion.element || turns != motion.corotational))
+        add("element", name, true, [element, turns](Body& body) {
+          motion_of(body).element = element, motion_of(body).corotational = turns, motion_of(body).step = 0;
+        });
     if (!own_ && solid_->quick()) return all;
     const Integrator integrator = motion.integrator == Integrator::rk4 ? Integrator::semi_implicit : Integrator::rk4;
     add("integrator", std::string(word_of(integrator)), true,
@@ -168,13 +180,14 @@ class Dynamic : public Method {
     row.step_us_median = 1e6 * time.median;
     row.step_us_p99 = 1e6 * time.p99;
     solid_->add_errors(row, answers, result);
-    solid_->errors().add(row, answers, same_mesh(), "same_mesh", result);
+    if (motion_of(scene.bodies[body()]).element == TetElement::linear)
+      solid_->errors().add(row, answers, same_mesh(), "same_mesh", result);
     add_course(scene, ready, row, result);
     if (row.knob == "scene") add_slides(*solid_, scene, ready.archive, row, {}, result);
     return result;
   }
 
-  /// The same presses of the same body without inertia, on the mesh that it has.
+  /// The same presses of the same body without inertia, of linear elements on the mesh that it has.
   const PressAnswers& same_mesh() {
     if (!same_mesh_.empty()) return same_mesh_;
     Scene scene = solid_->scene();
@@ -233,8 +246,8 @@ class Dynamic : public Method {
     const Body& of = scene.bodies[body()];
     auto& motion = motion_of(scene.bodies[body()]);
     const std::string key =
-        fmt::format("{} {} {} {}", ready.archive.tetrahedra.size(), motion.corotational, kind_of(of),
-                    ready.archive.condensed ? ready.archive.condensed->connection.size() : 0);
+        fmt::format("{} {} {} {} {}", ready.archive.tetrahedra.size(), motion.corotational, word_of(motion.element),
+                    kind_of(of), ready.archive.condensed ? ready.archive.condensed->connection.size() : 0);
     if (!small_step_.contains(key)) {
       motion.integrator = Integrator::rk4;
       motion.precision = Precision::float64;

@@ -9,11 +9,11 @@
 
 namespace palpate::study {
 
-// Springs turn with the tissue by themselves; a hybrid is neither cut nor refined.
-constexpr bool can_turn(const MovingSpec&) {
+// Springs turn with the tissue by themselves and have no strain; a hybrid is neither cut nor refined.
+constexpr bool has_elements(const MovingSpec&) {
   return true;
 }
-constexpr bool can_turn(const SpringMassSpec&) {
+constexpr bool has_elements(const SpringMassSpec&) {
   return false;
 }
 constexpr bool can_be_cut(const MovingSpec&) {
@@ -27,7 +27,7 @@ constexpr bool can_be_cut(const HybridSpec&) {
 struct MovingModel {
   std::string name;  ///< as a scene file has it
   bool own;          ///< the body is of that kind in its scene
-  bool turns;        ///< its elements can turn with the tissue
+  bool elements;     ///< it has some, which can turn with the tissue, or average their strain
   bool cut;          ///< it is cut and refined
   void (*become)(Body& body);
 };
@@ -36,13 +36,13 @@ template <std::derived_from<MovingSpec> Spec, std::derived_from<SolidSpec> Own>
 MovingModel moving_model() {
   constexpr bool own = std::same_as<Spec, Own>;
   const Spec spec;
-  return {std::string(Spec::kKind), own, can_turn(spec), own && can_be_cut(spec),
+  return {std::string(Spec::kKind), own, has_elements(spec), own && can_be_cut(spec),
           [](Body& body) { body = as_kind<Spec>(body); }};
 }
 
-/// Moving tissue of one model pressed in the deformation node's organ: integrator, step, precision, turning elements,
+/// Moving tissue of one model pressed in the deformation node's organ: element, integrator, step, precision,
 /// resolution, share of a hybrid's dynamic elements; rest after a cut. A body that has another model in its scene is
-/// neither cut nor refined, and in quick mode gets the model alone, and turning elements.
+/// neither cut nor refined, and in quick mode gets the model alone, and each element.
 std::unique_ptr<Method> make_dynamic(std::shared_ptr<SolidCase> solid, const MovingModel& model);
 
 /// A body on a finer mesh of the same shape, everything that names its nodes and elements named anew.

@@ -14,7 +14,7 @@ namespace palpate {
 void say_steps(const MovingSpec& body, DynamicOrgan& organ, const Archive& archive, const CheckSettings& settings,
                CheckReport& report);
 
-/// Says how far the body sinks under its loads and weight, by a static solve of linear elements; nothing without.
+/// Says how far the body sinks under its loads and weight, by a static solve of its own elements; nothing without.
 void say_sag(const MovingSpec& body, const StaticProblem& problem, CheckReport& report);
 
 /// Says where contact with tissue like this has been tried, or that it has not, and warns of what lies beyond it.
