@@ -67,21 +67,24 @@ TEST_F(ToolsCheckDynamic, TakesWhatIsSetInPlaceOfTheFilesOwn) {
 }
 
 TEST_F(ToolsCheckDynamic, WarnsOfAveragedStrainUnderAWideTool) {
-  const std::string averaged = scene_ + "element = \"nodal_strain\"\n",
-                    warning = "elements of averaged strain is up to";
+  const std::string averaged = scene_ + "element = \"nodal_strain\"\n", off = "elements of averaged strain is up to",
+                    swings = "elements of averaged strain can swing";
   const auto tool = [](const std::string& radius) {
     return "[[tool]]\nname = \"probe\"\npivot = [0, 0, 0.5]\nradius = " + radius +
            "\ntrajectory = \"" PALPATE_SOURCE "/scenes/trajectories/cylinder_hybrid.csv\"\n";
   };
-  const auto warns = [&](const std::string& scene) {
-    const ProgramResult said = testing::run_program(check(scene));
+  const auto warns = [&](const std::string& scene, const std::string& warning, const std::string& friction = "0.1") {
+    const ProgramResult said = testing::run_program(check(scene) + " --set contact.friction=" + friction);
     EXPECT_EQ(said.status, 0) << said.err;
     return said.out.find(warning) != std::string::npos;
   };
-  EXPECT_FALSE(warns(averaged)) << "nothing presses it";
-  EXPECT_FALSE(warns(averaged + tool("0.005"))) << "an edge is as wide";
-  EXPECT_FALSE(warns(scene_ + tool("0.03")));
-  EXPECT_TRUE(warns(averaged + tool("0.03")));
+  EXPECT_FALSE(warns(averaged, off)) << "nothing presses it";
+  EXPECT_FALSE(warns(averaged + tool("0.005"), off)) << "an edge is as wide";
+  EXPECT_FALSE(warns(scene_ + tool("0.03"), off));
+  EXPECT_TRUE(warns(averaged + tool("0.03"), off));
+  EXPECT_FALSE(warns(averaged, swings, "1"));
+  EXPECT_FALSE(warns(averaged + tool("0.005"), swings));
+  EXPECT_TRUE(warns(averaged + tool("0.005"), swings, "1"));
 }
 
 TEST_F(ToolsCheckDynamic, SaysTheSameAsJson) {

@@ -108,13 +108,20 @@ SAYS_FORCES = """globalThis.palpate && (() => { const { canvas } = palpate.curve
 return /\\d m?N$/.test(document.querySelector('#forces b')?.textContent) && data.some((value) => value > 0); })()"""
 
 
+NOTE_AT_CLOSE = """const [done] = arguments, { socket } = palpate.link;
+socket.addEventListener('close', () => done(document.getElementById('note').textContent));
+socket.close();"""
+
+
 def preparing(browser, address):
-    """Before its first picture a page says so, and what is felt."""
+    """Before its first picture a page says so, and what is felt; without a connection it prepares none."""
     on_load = browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": NO_THREAD})
     browser.get(address)
     expect(wait_for(browser, SAYS_FORCES, 20), "no forces before the first picture")
     note = browser.execute_script("return document.getElementById('note').textContent")
     expect(note.startswith("preparing the picture"), note)
+    note = browser.execute_async_script(NOTE_AT_CLOSE)
+    expect("preparing" not in note, f"without a connection: {note}")
     expect(browser.execute_script("return document.getElementById('legend').hidden"), "a scale without its colours")
     browser.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", on_load)
 
