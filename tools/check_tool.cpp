@@ -5,20 +5,21 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "common/devices/device.hpp"
 #include "common/tool/instrument.hpp"
 #include "common/tool/trajectory.hpp"
 
 namespace palpate {
 namespace {
 
-/// `file`: the tool's trajectory.
+/// `file`: the tool's motion, if it is in one.
 void check_start(const Tool& tool, const std::filesystem::path& file, const ToolDofs& dofs, const Body& body,
                  const CheckReport& report) {
   const Eigen::Isometry3d pose = tip_pose(make_trocar(tool.pivot, tool.axis, tool.up), dofs);
   for (const ToolPart& part : tool_parts(tool, dofs.grip))
     if (report.meets(part.axis(pose), part.radius))
-      throw std::runtime_error(fmt::format("{}: tool '{}' starts in contact with body '{}' or inside it", file.string(),
-                                           tool.name, name_of(body)));
+      throw std::runtime_error(fmt::format("{}tool '{}' starts in contact with body '{}' or inside it",
+                                           file.empty() ? "" : file.string() + ": ", tool.name, name_of(body)));
 }
 
 /// Where a body hangs by its weight is not looked for.
@@ -34,6 +35,14 @@ bool may_reach(const Tool& tool, const Trajectory& script, std::span<const Check
         if (body.meets(part.axis(pose), part.radius)) return true;
   }
   return false;
+}
+
+/// Where the tool is when the run begins; none where its driver has yet to say.
+std::optional<ToolDofs> start_of(const Scene& scene, const Tool& tool) {
+  const auto devices = make_devices(scene.tools, scene.rates.haptic_hz);
+  Device& own = *devices[&tool - scene.tools.data()];
+  if (!own.ready()) return {};
+  return own.read(0).dofs;
 }
 
 }  // namespace
@@ -53,13 +62,14 @@ void check_tool(const Scene& scene, const Tool& tool, std::span<const CheckRepor
                   kind_of(tool.device));
   const std::filesystem::path file = motion_file_of(tool.device);
   const std::optional<Trajectory> script = script_of(tool.device);
-  if (!script) {
+  if (script) {
+    out.say(fmt::format("{}, {} s{}", said, script->duration(), file.empty() ? "" : " of " + file.filename().string()));
+    check_grip(*script, file, tool);
+  } else {
     out.say(said + (file.empty() ? "" : " " + file.string()));
-    return;
   }
-  out.say(fmt::format("{}, {} s{}", said, script->duration(), file.empty() ? "" : " of " + file.filename().string()));
-  check_grip(*script, file, tool);
-  for (std::size_t b = 0; b < bodies.size(); ++b) check_start(tool, file, script->at(0), scene.bodies[b], bodies[b]);
+  const std::optional<ToolDofs> start = script ? script->at(0) : start_of(scene, tool);
+  for (std::size_t b = 0; start && b < bodies.size(); ++b) check_start(tool, file, *start, scene.bodies[b], bodies[b]);
 }
 
 }  // namespace palpate

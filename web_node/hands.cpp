@@ -52,7 +52,7 @@ std::optional<DeviceState> Hands::move(int tool, std::uint32_t page, const Sampl
   if (held.holder != page || sample.number <= held.number) return {};
   held.number = sample.number;
   held.numbers[++held.seq % held.numbers.size()] = sample.number;
-  held.heard = now;
+  if (!sample.again) held.heard = now;
   const ToolDofs dofs = dofs_for_tip(held.tool.trocar, sample.tip, sample.roll);
   return DeviceState{.tool = static_cast<std::uint32_t>(tool),
                      .seq = held.seq,

@@ -47,7 +47,7 @@ struct FrameTool {
   std::array<Eigen::Isometry3f, 3> parts;           ///< shaft, upper jaw, lower jaw: from the tip frame to the world
   Eigen::Vector3f force = Eigen::Vector3f::Zero();  ///< [N] on the tool at its tip
   float grip_torque = 0;                            ///< [N m] on the handle, opens the jaws
-  std::uint32_t flags = 0;                          ///< ForceFlag bits, and the two below
+  std::uint32_t flags = 0;                          ///< ForceFlag bits, and those below
   std::uint32_t sample = 0;                         ///< newest number of the holder that moves the tool; 0: none yet
   std::uint32_t holder = 0, asker = 0;              ///< pages by their number; 0: none
   float roll = 0, grip = 0;                         ///< [rad] of the tool, of its handle
@@ -56,6 +56,8 @@ struct FrameTool {
 inline constexpr std::uint32_t kSeen = 1u << 31;     ///< FrameTool::flags: its pose is known
 inline constexpr std::uint32_t kOffered = 1u << 30;  ///< a person may take it
 inline constexpr std::uint32_t kHolding = 1u << 29;  ///< its jaws are shut on what is between them
+inline constexpr std::uint32_t kUnheard = 1u
+                                          << 28;  ///< nothing comes of it: where it is now, and its force, nobody knows
 
 /// The state of a moment.
 struct Frame {
@@ -72,10 +74,11 @@ std::string encode(const Frame& frame);
 
 /// What a page says.
 struct Sample {
-  std::uint32_t number = 0;   ///< from 1, since it took the tool
+  std::uint32_t number = 0;   ///< from 1, since the page came
   Eigen::Vector3d tip;        ///< [m] where the tip shall go
   double roll = 0, grip = 0;  ///< [rad]
-  double pedal = 0;           ///< 0 or 1
+  double pedal = 0;           ///< from 0 to 1
+  bool again = false;         ///< the server's word for a page that is silent: see StandingHand
 };
 struct Said {
   enum Kind : std::uint8_t { sample = 1, take, release, give, taken, rest } kind;

@@ -1,5 +1,7 @@
 #include "web_node/session.hpp"
 
+#include <utility>
+
 #include "common/realtime/clock.hpp"
 
 namespace palpate::web {
@@ -80,9 +82,10 @@ void Session::ping() {
   socket_.async_ping({}, [self = shared_from_this()](beast::error_code) { self->pinging_ = false; });
 }
 
-// Of a tool that there is, and of frames that have been sent.
-bool Session::fits(const Said& said) const {
+// Of a tool that there is, of frames that have been sent, and later than the last sample.
+bool Session::fits(const Said& said) {
   if (said.kind == Said::taken) return said.number <= sent_;
+  if (said.kind == Said::sample && said.number <= std::exchange(number_said_, said.number)) return false;
   return said.kind == Said::rest || said.tool < host_.tools();
 }
 

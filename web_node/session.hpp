@@ -62,7 +62,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void read();
   void heard(std::size_t bytes);
   void heard_control(beast::websocket::frame_type kind);
-  bool fits(const Said& said) const;
+  bool fits(const Said& said);
   bool flooded();
   void stand();
   void ping();
@@ -79,6 +79,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::array<std::shared_ptr<const Message>, kSlots> waiting_;
   std::shared_ptr<const Message> going_;
   std::uint32_t sent_ = 0, taken_ = 0;  ///< frames
+  std::uint32_t number_said_ = 0;       ///< of its last sample
   int said_ = 0;                        ///< in the second that began at second_ns_
   std::int64_t second_ns_ = 0;
   StandingHand hand_;

@@ -13,6 +13,7 @@ void StandingHand::heard(const Said& said, std::int64_t now) {
 std::optional<Said> StandingHand::again(std::int64_t now) {
   if (!stands(now) || now - answered_ > kAnswers) return {};
   ++last_->motion.number;
+  last_->motion.again = true;
   return last_;
 }
 

@@ -16,7 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr unsigned kLooks = 4;  ///< at the bus, in the time of a frame
+constexpr unsigned kLooks = 4;                         ///< at the bus, in the time of a frame
+constexpr std::int64_t kUnheardAfterNs = kNsPerS / 2;  ///< of a tool
 
 json of(const TaskRecord& task, const Scene& scene) {
   json told{{"body", name_of(scene.bodies[task.body])}};
@@ -79,6 +80,7 @@ void WebLoop::take_tool(const ToolState& state) {
   place(tool.view, tool.trocar, state);
   tool.state = state;
   tool.seen = true;
+  tool.heard_ns = now_ns();
 }
 
 void WebLoop::follow_cuts() {
@@ -98,15 +100,19 @@ void WebLoop::follow_cuts() {
   server_.publish(topology, {false, topology_message(++topology_number_, topologies_)});
 }
 
-FrameTool WebLoop::tool_in_frame(int index) const {
+FrameTool WebLoop::tool_in_frame(int index, std::int64_t now) const {
   const Instrument& tool = instruments_[index];
   const Hands::View hand = hands_.view(index, tool.state.device_seq);
   FrameTool out;
   for (int part = 0; part < 3; ++part) out.parts[part] = part_pose(tool.view, tool.shape, part).cast<float>();
-  for (int axis = 0; axis < 3; ++axis) out.force[axis] = static_cast<float>(tool.force.force[axis]);
-  out.grip_torque = static_cast<float>(tool.force.grip);
-  out.flags =
-      tool.force.flags | (tool.seen ? kSeen : 0) | (hand.offered ? kOffered : 0) | (tool.state.holding ? kHolding : 0);
+  out.flags = (tool.seen ? kSeen : 0) | (hand.offered ? kOffered : 0) | (tool.state.holding ? kHolding : 0);
+  if (tool.seen && now - tool.heard_ns > kUnheardAfterNs) {
+    out.flags |= kUnheard;
+  } else {
+    for (int axis = 0; axis < 3; ++axis) out.force[axis] = static_cast<float>(tool.force.force[axis]);
+    out.grip_torque = static_cast<float>(tool.force.grip);
+    out.flags |= tool.force.flags;
+  }
   out.sample = hand.sample;
   out.holder = hand.holder;
   out.asker = hand.asker;
@@ -126,11 +132,11 @@ bool WebLoop::hand_moved() const {
 
 void WebLoop::send_frame() {
   std::int64_t sense = 0;
+  const std::int64_t now = now_ns();
   for (std::size_t t = 0; t < instruments_.size(); ++t) {
-    frame_tools_[t] = tool_in_frame(static_cast<int>(t));
+    frame_tools_[t] = tool_in_frame(static_cast<int>(t), now);
     sense = std::max(sense, instruments_[t].state.sense_ns);
   }
-  const std::int64_t now = now_ns();
   const std::int64_t own = sense != 0 ? clock_.to_own(sense) : now;
   if (sense != last_sense_ns_) {
     report_.latency.record(now - own);
@@ -166,26 +172,34 @@ void WebLoop::keep_house(std::int64_t now) {
 
 void WebLoop::send_status(std::int64_t now) {
   json nodes = json::array(), said = json::array(), tasks = json::array(), resections = json::array();
+  if (!presence_.matched("haptic")) said.push_back("waiting for a haptic node");
+  std::vector<std::string> silent;
+  for (const char* role : {"haptic", "deform"})
+    if (const std::string silence = link_.silence(role, now); !silence.empty()) silent.push_back(silence);
+  for (const std::string& own : silent) said.push_back(own);
+  const auto known = [&](const std::string& text) {
+    return std::ranges::any_of(silent, [&](const std::string& own) { return LinkWatch::same_silence(own, text); });
+  };
   for (const auto& [name, peer] : presence_.peers())
     if (peer.accepted && now - peer.heard_ns < 10 * kNsPerS)
       nodes.push_back({{"role", peer.status.role},
                        {"rate_hz", peer.status.rate_hz},
-                       {"text", peer.status.text},
+                       {"silent", now - peer.heard_ns > LinkWatch::kSilentAfterNs},
+                       {"text", known(peer.status.text) ? "" : peer.status.text},
                        {"driver_silent", peer.status.text == kDriverSilent}});
-  if (!presence_.matched("haptic")) said.push_back("waiting for a haptic node");
-  for (const char* role : {"haptic", "deform"})
-    if (const std::string silence = link_.silence(role, now); !silence.empty()) said.push_back(silence);
   for (const auto& [body, task] : latest_task_) tasks.push_back(of(task, scene_));
   for (const auto& [body, resection] : resections_)
     resections.push_back(resection_summary(name_of(scene_.bodies[body]), resection));
   const Percentiles latency = percentiles_us(recent_latency_);
   const Server::Seen seen = server_.seen();
+  json delays;  // null where nothing came
+  if (recent_latency_.count() > 0) delays = {{"p50", 1e-3 * latency.p50}, {"p99", 1e-3 * latency.p99}};
   const json status{{"nodes", nodes},
                     {"said", said},
                     {"tasks", tasks},
                     {"resections", resections},
                     {"rate_hz", rate_hz_},
-                    {"latency_ms", {{"p50", 1e-3 * latency.p50}, {"p99", 1e-3 * latency.p99}}},
+                    {"latency_ms", delays},
                     {"viewers", seen.viewers},
                     {"refused", seen.refused},
                     {"malformed", seen.malformed},

@@ -57,13 +57,14 @@ class WebLoop {
     ToolState state;
     ForceState force;
     bool seen = false;
+    std::int64_t heard_ns = 0;  ///< when its newest state came
   };
   void take();
   void take_tool(const ToolState& state);
   void follow_cuts();
   bool hand_moved() const;
   void send_frame();
-  FrameTool tool_in_frame(int tool) const;
+  FrameTool tool_in_frame(int tool, std::int64_t now) const;
   void keep_house(std::int64_t now);
   void send_status(std::int64_t now);
 

@@ -49,4 +49,9 @@ std::string LinkWatch::silence(const std::string& role, std::int64_t now_ns) con
   return fmt::format("nothing from {} for {:.0f} s", name, 1e-9 * static_cast<double>(now_ns - newest->last_ns));
 }
 
+bool LinkWatch::same_silence(std::string_view a, std::string_view b) {
+  const auto of_whom = [](std::string_view said) { return said.substr(0, said.rfind(" for ")); };
+  return of_whom(a) == of_whom(b);
+}
+
 }  // namespace palpate

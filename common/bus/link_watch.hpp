@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/bus/presence.hpp"
@@ -24,6 +25,8 @@ class LinkWatch {
   /// "nothing from NODE for 4 s", of the node of this role that was there last; empty while one is heard, or none ever
   /// was.
   std::string silence(const std::string& role, std::int64_t now_ns) const;
+  /// Whether two sentences of silence() are of the same node.
+  static bool same_silence(std::string_view a, std::string_view b);
 
  private:
   struct Heard {

@@ -25,7 +25,7 @@ DeviceSample HeldDevice::read(double seconds) {
   if (seq_ == 0 && !news) {
     if (!until_taken_) return {motion_.step(), 0};
     const DeviceSample own = until_taken_->read(seconds);
-    motion_.stand(own.dofs);
+    motion_.follow(own.dofs);
     return {own.dofs, 0};
   }
   if (news) {

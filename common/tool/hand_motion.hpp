@@ -20,6 +20,9 @@ class HandMotion {
 
   /// The tool stands here.
   void stand(const ToolDofs& at);
+  /// Something else leads it, a step on from the last one to here. From there on it comes to rest by itself, and where
+  /// somebody wants it then it is led up to slowly at first: that place is where it was a moment ago.
+  void follow(const ToolDofs& at);
   /// Somebody wants it there.
   void aim(const ToolDofs& target);
   /// It goes no further than where it is led up to now.
@@ -28,11 +31,14 @@ class HandMotion {
   ToolDofs step();
 
  private:
+  double steps_for(const PoseValues& from, const PoseValues& to) const;
+
   Bounds bounds_;
   double dt_;
   PoseValues led_{}, pace_{};      ///< where it is led up to, and how far in a step
   PoseValues first_{}, smooth_{};  ///< the filter's two stages
-  int left_ = 0;                   ///< steps until it is led to the target
+  PoseValues carried_{};           ///< in a step, by what led it before
+  int left_ = 0, meeting_ = 0;     ///< steps until it is led to the target, and for which it is led slowly
   double pedal_ = 0;
 };
 

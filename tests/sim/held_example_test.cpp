@@ -140,6 +140,47 @@ TEST(HeldExample, AMouseThatSlipsOffTheDuctIsNotLetGoInOneTick) {
   EXPECT_EQ(duct.force(), 0) << "beside it";
 }
 
+/// The tools of an example by their script, which a page takes one of after so long [s], by samples that say where it
+/// was a moment before.
+HeldExample::Felt taken_from_script(const std::string& name, int tool, double after) {
+  constexpr double kDt = 1e-3;
+  constexpr int kSeenLate = 30, kSampleApart = 16, kWatched = 1000;  // ticks
+  const Scene scene = load_scene(std::string(PALPATE_SOURCE_DIR) + "/scenes/" + name);
+  TwoNodes nodes(scene, load_or_precompute(scene, ArchivePart::surface));
+  nodes.delay(HeldExample::kLateTicks);
+  const auto devices = make_devices(scene.tools, scene.rates.haptic_hz, true);
+  std::vector<ToolDofs> dofs;
+  for (const auto& device : devices) dofs.push_back(device->read(0).dofs);
+  nodes.start(dofs);
+  const int taken = static_cast<int>(after / kDt);
+  HeldExample::Felt felt;
+  DeviceSample sample;
+  for (int i = 1; i <= taken + kWatched; ++i) {
+    if (i == taken - kSeenLate) sample.dofs = dofs[tool];
+    if (i >= taken && (i - taken) % kSampleApart == 0) {
+      ++sample.seq;
+      devices[tool]->put(sample);
+    }
+    for (std::size_t t = 0; t < devices.size(); ++t) dofs[t] = devices[t]->read(kDt * i).dofs;
+    const Vector3d before = nodes.force(tool);
+    nodes.step(dofs);
+    for (std::size_t t = 0; t < devices.size(); ++t)
+      devices[t]->render({nodes.force(static_cast<int>(t)), nodes.haptic().torque(static_cast<int>(t))}, 0);
+    if (i < taken) continue;
+    felt.most = std::max(felt.most, nodes.force(tool).norm());
+    felt.jump = std::max(felt.jump, (nodes.force(tool) - before).norm());
+  }
+  return felt;
+}
+
+// The forceps carries the lobe that has been cut off, at 51 mm/s.
+TEST(HeldExample, JawsThatCarryTheLobeAreTakenFromTheirScriptWithoutAKick) {
+  const HeldExample::Felt felt = taken_from_script("hepatectomy.toml", 0, 13.36);
+  EXPECT_LT(felt.jump, 0.02);
+  EXPECT_LT(felt.most, 0.2);
+  EXPECT_GT(felt.most, 0.05) << "it carries it";
+}
+
 // A hundred times as stiff as the scene has it, and a thousand.
 TEST(HeldExample, AMouseThatIsLedIntoAHardLiverRestsOnIt) {
   for (const char* young : {"600e3", "6e6"}) {

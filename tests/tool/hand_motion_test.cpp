@@ -77,6 +77,47 @@ TEST(HandMotion, TurnsAndSwingsAreBoundedToo) {
   EXPECT_NEAR(last.roll, 3, 1e-6);
 }
 
+// A scripted tool that is taken while it moves, by one who says where it was a moment ago.
+TEST(HandMotion, WhatIsTakenWhileItMovesComesToRestByAndBy) {
+  HandMotion motion({}, kTick);
+  motion.stand({.depth = 0.1});
+  Seen seen{.last = 0.1};
+  const auto script = [&](int i) { return 0.1 + 0.05 * i * kTick; };  // 50 mm/s
+  for (int i = 1; i <= 100; ++i) motion.follow({.depth = script(i)});
+  seen.last = script(100), seen.last_speed = 0.05;
+  const double taken_at = script(70);
+  double farthest = 0;
+  for (int i = 0; i < 400; ++i) {
+    if (i % 16 == 0) motion.aim({.depth = taken_at});
+    seen.look(motion.step().depth);
+    farthest = std::max(farthest, seen.last);
+  }
+  EXPECT_LT(seen.max_jerk, 0.003) << "3 m/s^2";
+  EXPECT_LT(farthest - script(100), 0.003);
+  EXPECT_NEAR(seen.last, taken_at, 1e-5);
+}
+
+TEST(HandMotion, WhatIsTakenAtRestIsLedAtOnce) {
+  HandMotion motion({}, kTick);
+  motion.stand({.depth = 0.1});
+  for (int i = 0; i < 100; ++i) motion.follow({.depth = 0.1});
+  motion.aim({.depth = 0.101});
+  double depth = 0;
+  for (int i = 0; i < 60; ++i) depth = motion.step().depth;
+  EXPECT_NEAR(depth, 0.101, 1e-5);
+}
+
+// What led it may jump: that is not gone on with.
+TEST(HandMotion, OfAJumpOfWhatLedItNoMoreIsLeftThanTheBounds) {
+  HandMotion motion({}, kTick);
+  motion.stand({.depth = 0.1});
+  motion.follow({.depth = 0.15});
+  Seen seen{.last = 0.15};
+  for (int i = 0; i < 300; ++i) seen.look(motion.step().depth);
+  EXPECT_LE(seen.max_speed, 0.25 + 1e-9);
+  EXPECT_LT(seen.last, 0.163);
+}
+
 TEST(HandMotion, HoldsWhereItIsLedTo) {
   HandMotion motion({}, kTick);
   motion.stand({.depth = 0.1});

@@ -168,6 +168,13 @@ TEST_F(ToolsScene, ATipInMillimetresIsWarnedOf) {
       << result.out;
 }
 
+TEST_F(ToolsScene, APointerThatBeginsInTheBodyIsRefused) {
+  const std::string inside = " --set tool.device=pointer --set 'tool.start=[0, 0, 0.02]'";
+  const auto result = run_program(program("palpate") + " check " + (folder_ / "block.toml").string() + inside);
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("starts in contact with body 'kidney' or inside it"), std::string::npos) << result.err;
+}
+
 TEST_F(ToolsScene, AModulusOfNoTissueIsWarnedOf) {
   change("block.toml", "young = 10000 ", "young = 6 ");
   expect_warning("young = 6 Pa, and tissue has");

@@ -9,6 +9,7 @@ import os
 import pathlib
 import re
 import select
+import signal
 import socket
 import struct
 import subprocess
@@ -540,6 +541,35 @@ def cut_off(options):
         expect(most < 1.05 * max(before) and last == 0, (most, last))
 
 
+# What the panel says: of the first tool, of the rates, and in the line over the picture.
+PANEL = """(() => { const text = (what) => document.querySelector(what)?.textContent;
+return { force: text('#forces b'), words: text('#forces small'), rates: text('#rates'), note: text('#note') }; })()"""
+
+
+def silent(options):
+    """Of a node that stands still the page says no rate and no force, once, and both again when it goes on."""
+    with Nodes(options, "liver.toml") as nodes, open_page(nodes) as page:
+        page.wait("Math.hypot(...palpate.frame.tools[0].force) > 0.05", 40)
+        for node, row in (("haptic_node", "haptic loop"), ("deform_node", "tissue")):
+            pid = int(subprocess.run(["pgrep", "-P", str(nodes.process.pid), node], check=True, capture_output=True,
+                                     text=True).stdout)
+            os.kill(pid, signal.SIGSTOP)
+            try:
+                page.wait(f"document.getElementById('rates').textContent.includes('{row}silent')", 10)
+                time.sleep(1.5)  # the others say so too
+                said = page.get(PANEL)
+            finally:
+                os.kill(pid, signal.SIGCONT)
+            print(f"{node} stands: {said}")
+            expect(said["note"].count("nothing from") == 1, said["note"])
+            if node == "haptic_node":
+                expect(said["force"] == "" and "not heard of" in said["words"], said)
+                expect("tool to frame" not in said["rates"], said["rates"])
+            page.wait(f"!document.getElementById('rates').textContent.includes('{row}silent')", 10)
+            page.wait(f"!palpate.frame.tools[0].unheard && /N$/.test({PANEL}.force)", 10)
+        expect(not page.errors(), page.errors())
+
+
 def triangles_at_rest(options, scene):
     said = subprocess.run([f"{options.bin}/palpate", "check", f"{options.source}/scenes/{scene}"], check=True,
                           capture_output=True, text=True).stdout
@@ -692,7 +722,7 @@ def attack(port):
 
 
 CASES = {"press": press, "touch": touch, "way": way, "pedal": pedal, "jaws": jaws, "share": share, "slow": slow,
-         "cut": cut, "cut_off": cut_off, "camera": views.camera, "through": views.through, "hostile": hostile}
+         "cut": cut, "cut_off": cut_off, "silent": silent, "camera": views.camera, "through": views.through, "hostile": hostile}
 
 
 def main():

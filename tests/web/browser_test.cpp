@@ -61,6 +61,10 @@ TEST(WebBrowser, APageWhoseNetworkIsCutLetsGo) {
   run("cut_off");
 }
 
+TEST(WebBrowser, OfANodeThatStandsThePageSaysNoRateAndNoForce) {
+  run("silent");
+}
+
 TEST(WebBrowser, ACutAppears) {
   run("cut");
 }

@@ -51,6 +51,15 @@ TEST_F(WebHands, WhoIsSilentForSecondsLosesTheToolToWhoWantsIt) {
   EXPECT_EQ(holder(), 2u);
 }
 
+// The server's word for a page that is silent is not the page's own.
+TEST_F(WebHands, WhatIsSaidAgainForASilentPageDoesNotKeepTheTool) {
+  hands_.take(0, 1, now_);
+  move(1, 1);
+  EXPECT_TRUE(hands_.move(0, 1, {.number = 2, .tip = {0.01, 0.02, -0.1}, .again = true}, now_ + 1));
+  hands_.take(0, 2, now_ + Hands::kIdle + 0.1);
+  EXPECT_EQ(holder(), 2u);
+}
+
 TEST_F(WebHands, ATwiceToldSampleMovesNothing) {
   hands_.take(0, 1, now_);
   EXPECT_TRUE(move(1, 5));

@@ -63,6 +63,19 @@ TEST_F(WebServerAbuse, WhatIsNoMessageThrowsThePageOut) {
   EXPECT_EQ(said_, 0);
 }
 
+TEST_F(WebServerAbuse, ASampleWhoseNumberIsNoHigherThanTheLastOnesThrowsThePageOut) {
+  std::uint64_t thrown_out = 0;
+  for (const std::uint32_t next : {640u, 64u}) {
+    Client page(server_.port());
+    ASSERT_TRUE(page.enter());
+    page.read();
+    EXPECT_TRUE(page.sample(640) && page.sample(704) && page.sample(next));
+    EXPECT_FALSE(page.read()) << next;
+    EXPECT_TRUE(within(10s, [&] { return server_.seen().malformed == thrown_out + 1; }));
+    ++thrown_out;
+  }
+}
+
 TEST_F(WebServerAbuse, AFrameThatIsNoneThrowsThePageOut) {
   using namespace std::string_literals;
   const std::array bad{"\x82\x05hello"s,                               // not masked

@@ -22,6 +22,7 @@ TEST(WebStandingHand, SaysItsLastSampleByNewNumbersForASecond) {
     ASSERT_TRUE(again) << now << " ms";
     EXPECT_EQ(again->motion.number, ++number);
     EXPECT_EQ(again->tool, 1);
+    EXPECT_TRUE(again->motion.again);
     EXPECT_EQ(again->motion.tip, Eigen::Vector3d(0.1, 0.2, 0.3));
   }
   EXPECT_LT(number, 128u) << "below the page's next number";

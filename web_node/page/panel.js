@@ -85,14 +85,15 @@ export class Panel {
     frame.tools.forEach((tool, i) => {
       const item = byId('forces').children[i];
       if (!item) return;
-      item.querySelector('b').textContent = forceReading(size(tool.force), this.forceMax);
+      item.querySelector('b').textContent = tool.unheard ? '' : forceReading(size(tool.force), this.forceMax);
       const burns = this.scenery.tools[i].cuts && pedalIsDown(tool);
       const words = flagWords.filter(([bit]) => tool.flags & bit).map(([, text]) => text), burn = burns && 'cautery on';
       item.classList.toggle('burns', burns);
-      item.classList.toggle('flag', (tool.flags & (4 | 16 | SILENT)) !== 0);
+      item.classList.toggle('flag', tool.unheard || (tool.flags & (4 | 16 | SILENT)) !== 0);
       const hand = !tool.holder ? '' : tool.holder === me ? 'in your hand' : `in the hand of page ${tool.holder}`;
       const asked = tool.asker === me ? ['you have asked for it'] : [];
-      item.querySelector('small').textContent = [burn, hand, ...asked, ...words].filter(Boolean).join(', ');
+      const unheard = tool.unheard && 'not heard of: its force is not known';
+      item.querySelector('small').textContent = [burn, hand, unheard, ...asked, ...words].filter(Boolean).join(', ');
     });
   }
 
@@ -116,11 +117,11 @@ export class Panel {
   }
 
   status(status, page) {
-    const rates = Object.fromEntries(status.nodes.map((node) => [node.role, node.rate_hz]));
-    const lines = [['haptic loop', rates.haptic && `${rates.haptic.toFixed(0)} Hz`],
-      ['tissue', rates.deform && `${rates.deform.toFixed(0)} Hz`],
+    const rate = (node) => (node.silent ? 'silent' : `${node.rate_hz.toFixed(0)} Hz`);
+    const rates = Object.fromEntries(status.nodes.map((node) => [node.role, rate(node)]));
+    const lines = [['haptic loop', rates.haptic], ['tissue', rates.deform],
       ['frames sent', `${status.rate_hz.toFixed(0)} Hz`], ['pictures', `${page.rate.toFixed(0)} Hz`],
-      ['tool to frame', `${status.latency_ms.p50.toFixed(0)} ms`],
+      ['tool to frame', status.latency_ms === null ? undefined : `${status.latency_ms.p50.toFixed(0)} ms`],
       ['hand to picture', page.delay === undefined ? undefined : `${page.delay.toFixed(0)} ms`],
       ['received', `${(page.bytes / 1e6).toFixed(2)} MB/s`], ['watching', status.viewers]];
     byId('rates').replaceChildren(...lines.filter(([, value]) => value !== undefined)

@@ -5,6 +5,7 @@ import { Programs } from './programs.js';
 import { Textures } from './textures.js';
 import { axis, blockBytes, origin, sceneBlock } from './scene_block.js';
 import { arrowMesh, arrowPlace } from './arrow.js';
+import { takesColours } from './soft_body.js';
 
 // Without a graphics card smooth edges and fine surfaces would cost most of the pictures.
 function drawsBySoftware() {
@@ -109,7 +110,7 @@ export class Renderer {
   }
 
   drawSoft({ view, key }, look, tools) {
-    const { gl } = this, byScalar = look.byScalar && view.finish !== 'plastic';
+    const { gl } = this, byScalar = look.byScalar && takesColours(view.finish);
     const variant = byScalar ? 'BY_SCALAR' : view.image ? 'TEXTURED' : '';
     const program = this.programs.get(byScalar ? 'tissue' : view.finish, tools, variant);
     if (!this.meshes.has(key)) this.meshes.set(key, new GpuMesh(gl));

@@ -1,5 +1,5 @@
 // The bodies of a scene, in the shape of a frame.
-import { SoftBody } from './soft_body.js';
+import { SoftBody, takesColours } from './soft_body.js';
 
 export class Shapes {
   // `fineness`: share of the triangles that a body may have after refinement.
@@ -29,8 +29,11 @@ export class Shapes {
     }
     if (this.frame === frame) return true;
     this.frame = frame;
-    this.most = 0;  // the largest displacement [m]
-    this.bodies.forEach((body, b) => { this.most = Math.max(this.most, body.place(frame.bodies[b])); });
+    this.most = 0;  // the largest displacement of what is coloured by it [m]
+    this.bodies.forEach((body, b) => {
+      const most = body.place(frame.bodies[b]);
+      if (takesColours(body.spec.finish)) this.most = Math.max(this.most, most);
+    });
     return true;
   }
 

@@ -5,6 +5,9 @@ import { VisualShape } from './visual_shape.js';
 import { ThickWall } from './wall.js';
 import { unpack } from './wire.js';
 
+// Whether the colours of displacement are shown on it.
+export const takesColours = (finish) => finish !== 'plastic';
+
 export class SoftBody {
   // `mostTriangles`: after refinement.
   constructor(spec, triangles, mostTriangles) {

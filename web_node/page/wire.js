@@ -1,5 +1,5 @@
 // Messages between this page and web_node; docs/live.md has the layout. All numbers are little-endian.
-export const SEEN = 1 << 31, OFFERED = 1 << 30, HOLDING = 1 << 29;
+export const SEEN = 1 << 31, OFFERED = 1 << 30, HOLDING = 1 << 29, UNHEARD = 1 << 28;
 export const SILENT = 64;  // a ForceFlag: the tool is let go
 export const SCENERY = 1, TOPOLOGY = 2, FRAME = 3;
 const SAMPLE = 1, TAKE = 2, RELEASE = 3, GIVE = 4, TAKEN = 5, REST = 6;
@@ -55,8 +55,8 @@ function decodeTool(view, at) {
   const flags = u(40);
   return {
     parts, force: [f(36), f(37), f(38)], gripTorque: f(39), flags: flags & 0xffff, seen: (flags & SEEN) !== 0,
-    offered: (flags & OFFERED) !== 0, holding: (flags & HOLDING) !== 0, sample: u(41), holder: u(42), asker: u(43), roll: f(44), grip: f(45),
-    pedal: f(46),
+    offered: (flags & OFFERED) !== 0, holding: (flags & HOLDING) !== 0, unheard: (flags & UNHEARD) !== 0,
+    sample: u(41), holder: u(42), asker: u(43), roll: f(44), grip: f(45), pedal: f(46),
   };
 }
 
