@@ -169,7 +169,7 @@ TEST_F(ToolsScene, ATipInMillimetresIsWarnedOf) {
 }
 
 TEST_F(ToolsScene, APointerThatBeginsInTheBodyIsRefused) {
-  const std::string inside = " --set tool.device=pointer --set 'tool.start=[0, 0, 0.02]'";
+  const std::string inside = " --set tool.device=pointer --set tool.start=[0.05,0.04,0.05]";
   const auto result = run_program(program("palpate") + " check " + (folder_ / "block.toml").string() + inside);
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.err.find("starts in contact with body 'kidney' or inside it"), std::string::npos) << result.err;
