@@ -53,7 +53,7 @@ DescribedKey& KeyList::enter_key(const Key& key, std::string type, std::string f
   const std::string meaning = (key.unit.empty() ? "" : fmt::format("[{}] ", key.unit)) + std::string(key.meaning);
   auto found = std::ranges::find(keys, key.name, &DescribedKey::name);
   if (found == keys.end()) {
-    keys.push_back({std::string(key.name), std::move(type), fallback, meaning, {}, false});
+    keys.push_back({std::string(key.name), std::move(type), fallback, meaning, key.use});
     found = keys.end() - 1;
   } else if (of_kind) {
     if (found->fallback.substr(0, found->fallback.find(';')) != fallback)

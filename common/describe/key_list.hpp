@@ -15,6 +15,7 @@ struct DescribedKey {
   std::string type;                ///< "number > 0"
   std::string fallback;            ///< what holds where it is absent, "needed" if it must not be
   std::string meaning;             ///< with its unit
+  Use use = Use::agreed;           ///< who depends on it
   std::vector<std::string> kinds;  ///< alternatives that have it; empty: it is outside of any
   std::size_t of_kinds = 0;        ///< how many alternatives there are
   bool is_table = false;

@@ -32,7 +32,7 @@ class SceneFolder {
   std::filesystem::path path_;
 };
 
-/// Holds every key of every table.
+/// Holds every table, and of its keys those whose reading and writing is tried by it.
 inline const std::string kFullScene = R"(title = "All \"keys\" at once"
 
 [[body]]

@@ -85,5 +85,21 @@ TEST(SceneRefusal, EveryKeyOfTheSchemaRefusesADate) {
   EXPECT_GT(tried, 110);
 }
 
+template <class Device>
+void expect_keys_of_one_node() {
+  KeyList keys;
+  Device device;
+  describe(keys, device);
+  for (const DescribedTable& table : keys.tables())
+    for (const DescribedKey& key : table.keys)
+      EXPECT_EQ(key.use, Use::local) << Device::kKind << " " << key.name << ": nodes need not agree on devices";
+}
+
+TEST(SceneSchema, NodesNeedNotAgreeOnDevices) {
+  []<class... Devices>(std::type_identity<std::variant<Devices...>>) {
+    (expect_keys_of_one_node<Devices>(), ...);
+  }(std::type_identity<DeviceSpec>());
+}
+
 }  // namespace
 }  // namespace palpate

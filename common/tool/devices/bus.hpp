@@ -15,7 +15,8 @@ struct BusDeviceSpec {
 inline void describe(Description& d, BusDeviceSpec& b) {
   describe_lease(d, b.lease);
   d.number({"motion_scale", "",
-            "what the driver says of yaw, pitch and depth is multiplied by it: 0.5 halves the motion about the trocar"},
+            "what the driver says of yaw, pitch and depth is multiplied by it: 0.5 halves the motion about the trocar",
+            Need::optional, Use::local},
            b.motion_scale, within(1e-3, 1e3));
 }
 

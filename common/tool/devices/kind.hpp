@@ -33,7 +33,7 @@ struct DevicePlace;
 ///
 /// motion_file(spec): the file that its motion comes from; empty without one.
 ///
-/// script(spec): its motion, or the one that it wants to make, where it is known before the run. Throws as
+/// script(spec): the motion, or the one that it wants to make, that a file holds, which programs name then. Throws as
 /// load_trajectory() does.
 ///
 /// for_hands(spec): whether a person may take the tool.
