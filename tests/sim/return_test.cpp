@@ -192,6 +192,14 @@ class InterruptedScript : public ::testing::Test {
   }
 };
 
+/// A tool that another haptic node puts into the tissue, which swings since the first one's has gone.
+class PutIntoTissue : public InterruptedScript {};
+
+TEST_F(PutIntoTissue, IsNoKickWhereAHapticNodeComesBack) {
+  expect_no_kick(Played("block_partial"), 5500, {{Victim::haptic, 3970, 4369}, {Victim::haptic, 3800, 4200}});
+  expect_no_kick(Played("cylinder_hybrid"), 8000, {{Victim::haptic, 4325, 6583}});
+}
+
 /// What a scalpel should have cut meanwhile is not.
 class MissedCut : public InterruptedScript {};
 

@@ -62,6 +62,7 @@ void DynamicOrgan::take_tools(std::span<const ToolInTick> tools) {
     if (tools[t].present && !tools[t].begins) continue;
     if (!tools[t].present) in_tick_[t].parts = in_tick_[t].parts_before = {};
     hands_[t].holding = false;
+    hands_[t].began = tools[t].present;
     contacts_.drop_tool(t);
     if (still_) still_->drop_tool(t);
   }
@@ -96,7 +97,7 @@ void DynamicOrgan::move_tools(double share) {
 void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   const bool swings = std::exchange(touched_before_, touched_before_ || !contacts().empty());
   advance(tools, dt);
-  if (swings && put_into(tools)) calm_left_ = kCalmed;
+  if (put_into(swings)) calm_left_ = kCalmed;
   // What jaws carry goes with them: stopped, it would be a blow to the hand.
   if (calm_left_ > 0 && std::ranges::none_of(hands_, &Hand::holding)) calm();
   calm_left_ = std::max(calm_left_ - dt, 0.0);
@@ -104,10 +105,19 @@ void DynamicOrgan::tick(std::span<const ToolInTick> tools, double dt) {
   tear_and_drop();
 }
 
-// A tool that no motion has led here touches: what it pressed before swings, and what it is put into would.
-bool DynamicOrgan::put_into(std::span<const ToolInTick> tools) const {
-  const auto is_new = [&](const TouchContact& c) { return tools[c.tool_point().tool].begins; };
-  return std::ranges::any_of(contacts(), is_new) || (still_ && std::ranges::any_of(still_->contacts(), is_new));
+// A tool that no motion has led here presses, once it has come in: what it pressed before swings, and so does what it
+// comes into.
+bool DynamicOrgan::put_into(bool swings) {
+  bool any = false;
+  for (int t = 0; t < static_cast<int>(hands_.size()); ++t) {
+    if (!hands_[t].began) continue;
+    const auto by_it = [t](const TouchContact& c) { return c.is_by(t); };
+    const bool presses =
+        std::ranges::any_of(contacts(), by_it) || (still_ && std::ranges::any_of(still_->contacts(), by_it));
+    hands_[t].began = !presses && contacts_.lies_on(t);
+    any |= presses && (swings || contacts_.leads_in(t));
+  }
+  return any;
 }
 
 void DynamicOrgan::settle(std::span<const ToolInTick> tools, double dt) {
@@ -232,7 +242,10 @@ void DynamicOrgan::state(State& s, std::span<const MovingTool> tools) {
   s.same(model_->state_size());
   model_->state(s);
   s.same(hands_.size());
-  for (Hand& hand : hands_) s.value(hand.holding);
+  for (Hand& hand : hands_) {
+    s.value(hand.holding);
+    s.value(hand.began);
+  }
   passing_.state(s);
   s.value(calm_left_);
   s.value(moved_with_);

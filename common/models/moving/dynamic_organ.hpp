@@ -92,10 +92,11 @@ class DynamicOrgan {
     std::optional<ForcepsShape> turning;
     std::optional<Cautery> cautery;
     bool holding = false;
+    bool began = false;  ///< over the tissue, and has not pressed it yet
   };
   void advance(std::span<const ToolInTick> tools, double dt);
   void calm();
-  bool put_into(std::span<const ToolInTick> tools) const;
+  bool put_into(bool swings);
   void take_tools(std::span<const ToolInTick> tools);
   void move_tools(double share);
   void work_jaws(std::span<const ToolInTick> tools);

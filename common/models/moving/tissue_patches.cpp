@@ -23,7 +23,8 @@ constexpr double kSlackWay = 0.2, kSlackTurn = 0.1;
 // By which all others may let a patch sink beyond what the nodes do, of what it gives way by. Patches that lie near
 // each other on a thin body would do more, and answer one another's change with a larger one.
 constexpr double kMostByOthers = 0.05;
-constexpr double kResolved = 4;  // edges over which linear elements know the true compliance
+constexpr double kSlowsBelow = 0.001, kSlowest = 0.1;  // [m], [1]: of what is led out
+constexpr double kResolved = 4;                        // edges over which linear elements know the true compliance
 
 std::array<int, 3> ascending(std::array<int, 3> nodes) {
   std::ranges::sort(nodes);
@@ -45,6 +46,11 @@ Eigen::Isometry3d followed(const Eigen::Isometry3d& before, const Eigen::Isometr
 
 Segment seen_from(const Eigen::Isometry3d& motion, const Segment& segment) {
   return {motion * segment.start, motion * segment.end};
+}
+
+// [m/s] More and more slowly: what is pressed is slower to give way the faster it is pressed.
+double led_out(double depth) {
+  return Patch::kWayOut * std::clamp(depth / kSlowsBelow, kSlowest, 1.0);
 }
 
 }  // namespace
@@ -159,6 +165,15 @@ double TissuePatches::give_of_point(double radius) const {
 
 bool TissuePatches::laid() const {
   return std::ranges::any_of(parts_, [](const Part& own) { return !own.nodes.empty(); });
+}
+
+bool TissuePatches::laid(int tool) const {
+  return std::ranges::any_of(parts_, [tool](const Part& own) { return own.tool == tool && !own.nodes.empty(); });
+}
+
+bool TissuePatches::leads_in(int tool) const {
+  const auto eased = [](const Part& own) { return std::ranges::any_of(own.ease, [](double e) { return e > 0; }); };
+  return std::ranges::any_of(parts_, [&](const Part& own) { return own.tool == tool && eased(own); });
 }
 
 void TissuePatches::find(std::span<const MovingTool> tools, const std::function<bool(int tool)>& grasps,
@@ -315,7 +330,7 @@ void TissuePatches::press(Part& own, const MovingTool& tool, double dt) {
   for (std::size_t p = 0; p < depth.size(); ++p) {
     own.depth[p] = depth[p];
     depth[p] -= own.ease[p];
-    own.ease[p] = std::max(own.ease[p] - Patch::kWayOut * dt, 0.0);
+    own.ease[p] = std::max(own.ease[p] - led_out(own.ease[p]) * dt, 0.0);
   }
   own.patch.step(ground, step);
   nodes_->push(number(own), seen_from_world(own), dt);

@@ -48,6 +48,8 @@ class TissuePatches {
   void find(std::span<const MovingTool> tools, const std::function<bool(int tool)>& grasps, const Loose& loose);
   /// Whether one is laid.
   bool laid() const;
+  bool laid(int tool) const;      ///< one of this tool
+  bool leads_in(int tool) const;  ///< one that stands too deep as yet
   /// Whether a part of a tool has one.
   bool has(int tool, int part) const;
   /// Whether a facet of the CutMesh is theirs.

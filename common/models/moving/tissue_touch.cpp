@@ -78,6 +78,11 @@ bool TissueTouch::passed(const TouchContact& c, const MovingTool& tool) const {
   return away > radius + std::min(c.softness() * c.force.norm() + passed_, radius + kFarthest);
 }
 
+bool TissueTouch::lies_on(int tool) const {
+  return (patches_ && patches_->laid(tool)) ||
+         std::ranges::any_of(law_.contacts(), [tool](const TouchContact& c) { return c.is_by(tool); });
+}
+
 // What they did to nodes is loose.
 template <class Gone>
 void TissueTouch::drop_where(Gone&& gone) {

@@ -33,6 +33,11 @@ class TissueTouch {
   /// Whether tools touch the tissue, or nearly do, so that its steps are to be step()'s.
   bool touched() const { return !law_.contacts().empty() || (patches_ && patches_->laid()); }
 
+  /// The same of one tool.
+  bool lies_on(int tool) const;
+  /// Whether tissue is led out of it.
+  bool leads_in(int tool) const { return patches_ && patches_->leads_in(tool); }
+
   /// Once a tick of steps of `dt` [s]: which points the tools' parts touch. Contacts that go on keep where they stick.
   /// Returns what cells of patches did to nodes that have gone over a rim, until the next call: to let it fade is for
   /// the caller.
