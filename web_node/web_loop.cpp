@@ -180,13 +180,16 @@ void WebLoop::send_status(std::int64_t now) {
   const auto known = [&](const std::string& text) {
     return std::ranges::any_of(silent, [&](const std::string& own) { return LinkWatch::same_silence(own, text); });
   };
-  for (const auto& [name, peer] : presence_.peers())
-    if (peer.accepted && now - peer.heard_ns < 10 * kNsPerS)
-      nodes.push_back({{"role", peer.status.role},
-                       {"rate_hz", peer.status.rate_hz},
-                       {"silent", now - peer.heard_ns > LinkWatch::kSilentAfterNs},
-                       {"text", known(peer.status.text) ? "" : peer.status.text},
-                       {"driver_silent", peer.status.text == kDriverSilent}});
+  for (const auto& [name, peer] : presence_.peers()) {
+    if (!peer.accepted || now - peer.heard_ns >= 10 * kNsPerS) continue;
+    const bool is_silent = now - peer.heard_ns > LinkWatch::kSilentAfterNs;
+    const std::string& text = peer.status.text;
+    nodes.push_back({{"role", peer.status.role},
+                     {"rate_hz", peer.status.rate_hz},
+                     {"silent", is_silent},
+                     {"text", is_silent || known(text) ? "" : text},
+                     {"driver_silent", text == kDriverSilent}});
+  }
   for (const auto& [body, task] : latest_task_) tasks.push_back(of(task, scene_));
   for (const auto& [body, resection] : resections_)
     resections.push_back(resection_summary(name_of(scene_.bodies[body]), resection));
