@@ -7,8 +7,10 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <chrono>
 #include <cstring>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 namespace palpate::web {
@@ -51,11 +53,14 @@ class Client {
   }
   bool enter() { return upgrade("http://" + host()); }
 
-  /// The next message; empty once the other side has closed.
+  /// The next message; empty once the other side has closed. Throws where none comes in 20 s.
   std::optional<std::string> read() {
     beast::flat_buffer buffer;
-    beast::error_code error;
-    socket_.read(buffer, error);
+    beast::error_code error = boost::asio::error::would_block;
+    socket_.async_read(buffer, [&](beast::error_code how, std::size_t) { error = how; });
+    context_.restart();
+    context_.run_for(std::chrono::seconds(20));
+    if (error == boost::asio::error::would_block) throw std::runtime_error("nothing comes from the server");
     if (error) return {};
     return beast::buffers_to_string(buffer.data());
   }

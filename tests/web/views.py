@@ -207,15 +207,23 @@ new DataView(without).setFloat32(words.byteOffset - 28, 1000, true);
 palpate.picture.take = () => take(without);
 palpate.picture.take();
 palpate.toggle('pause');"""
+# [mm] How far the catheter has gone, how far the duct, and where its colours end.
+GONE = """(() => { const most = (finish) =>
+  Math.max(...palpate.bodies().find((body) => body.spec.finish === finish).displacement);
+return [most('plastic'), most('duct'), palpate.look.legendMax].map((metres) => 1e3 * metres); })()"""
 INSERTED = "parseInt(document.querySelector('#tasks p')?.textContent) >= 5"  # [mm]
 
 
 def through(options):
-    """The catheter in the duct is in the picture where ducts are seen through, and only there."""
+    """The catheter in the duct is in the picture where ducts are seen through, and only there; its way, which takes no
+    colour, does not stretch the scale of the duct's."""
     with Nodes(options, "catheter_insertion.toml") as nodes, open_page(nodes) as page:
         page.wait(INSERTED, 60)
         page.browser.execute_script(STAND)
         look(page)
+        catheter, duct, last_colour = page.get(GONE)
+        print(f"the catheter has gone {catheter:.1f} mm, the duct {duct:.1f} mm; the last colour is {last_colour:.1f} mm")
+        expect(duct <= last_colour < 0.5 * catheter, "the scale of colours is not the duct's")
         count = page.browser.execute_script(PLACES_INSIDE)
         expect(count > 30, f"{count} places of the catheter are in the duct")
         closed = look(page, None)

@@ -20,9 +20,6 @@ constexpr double kAbout = 3;  // radii, or longest edges, about a patch over whi
 // By which the tissue may go [radii] and turn [rad] under a patch before that goes with it: one that followed each
 // swing would feed it.
 constexpr double kSlackWay = 0.2, kSlackTurn = 0.1;
-// By which all others may let a patch sink beyond what the nodes do, of what it gives way by. Patches that lie near
-// each other on a thin body would do more, and answer one another's change with a larger one.
-constexpr double kMostByOthers = 0.05;
 constexpr double kSlowsBelow = 0.001, kSlowest = 0.1;  // [m], [1]: of what is led out
 constexpr double kResolved = 4;                        // edges over which linear elements know the true compliance
 
@@ -91,10 +88,9 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
     const int most = own.patch.max_nodes(), pairs = most * (most + 1) / 2;
     for (std::vector<int>* nodes : {&own.nodes, &own.known}) nodes->reserve(most);
     for (std::vector<NodeGive>* give : {&own.world_give, &own.give}) give->reserve(still ? pairs : most);
-    for (std::vector<Vector3d>* of_nodes : {&own.last, &own.beside}) of_nodes->reserve(most);
+    own.last.reserve(most);
+    neighbours_.add(own.patch, own.nodes);
   }
-  met_.resize(parts_.size());
-  for (Met& met : met_) met.moved.reserve(Patch::kMaxNodes);
   moved_.reserve(Patch::kMaxNodes);
   went_.reserve(Patch::kMaxNodes);
   forces_.reserve(Patch::kMaxNodes);
@@ -110,6 +106,7 @@ TissuePatches::TissuePatches(const Archive& archive, const ElasticMesh& mesh, co
   const auto compliance = Compliance<double>::at_rest(archive);
   near_field_ = std::make_unique<NearField>(surface_, compliance, material_, largest, kResolved);
   near_field_->subtract(compliance);
+  neighbours_.use(*near_field_);
   leave_out(topology);
 }
 
@@ -257,46 +254,11 @@ void TissuePatches::lay(Part& own, const MovingTool& tool, const Loose& loose) {
   own.patch.meet({surface_, *near_field_, friction_}, own.give);
 }
 
-// A patch lies in the others' dents, which the nodes' own motion does not show. As they are pressed now: known a step
-// late they would feed the tissue's swing. Each pair knows of each other by the same share.
-void TissuePatches::meet_others(Part& own) {
-  own.sunk_by_others = 0;
-  for (const Part& other : parts_)
-    if (meet(own, other)) own.sunk_by_others += find_met(own, other);
-  OfCells dents{};
-  own.beside.assign(own.nodes.size(), Vector3d::Zero());
-  for (const Part& other : parts_) {
-    if (!meet(own, other)) continue;
-    const Met& met = met_[number(other)];
-    const double share = kMostByOthers / std::max({kMostByOthers, own.sunk_by_others, other.sunk_by_others});
-    for (std::size_t p = 0; p < dents.size(); ++p) dents[p] += share * met.dents[p];
-    for (std::size_t i = 0; i < own.nodes.size(); ++i) own.beside[i] += share * met.moved[i];
-  }
-  own.patch.lie_in(dents);
-}
-
-bool TissuePatches::meet(const Part& own, const Part& other) {
-  return &other != &own && other.patch.touches();
-}
-
-// [1] By how much it sinks, of what the larger one's force would do between two such patches in one place.
-double TissuePatches::find_met(Part& own, const Part& other) {
-  Met& met = met_[number(other)];
-  own.patch.find_dents(other.patch, met.dents);
-  met.moved.assign(own.nodes.size(), Vector3d::Zero());
-  for (const PatchForce& f : other.patch.forces())
-    for (std::size_t i = 0; i < own.nodes.size(); ++i)
-      met.moved[i] += near_field_->between(own.nodes[i], f.node) * f.force;
-  const double gives =
-      std::max(own.patch.pressing(), other.patch.pressing()) * std::sqrt(own.patch.softness() * other.patch.softness());
-  return gives > 0 ? std::abs(own.patch.sunk(met.dents, met.moved)) / gives : 0;
-}
-
 void TissuePatches::lift(Part& own) {
   nodes_->release(number(own));
+  neighbours_.lift(number(own));
   own.patch.lift();
   own.nodes.clear();
-  own.sunk_by_others = 0;
   own.ease.fill(0);
   own.depth.fill(0);
 }
@@ -308,13 +270,14 @@ void TissuePatches::step(std::span<const MovingTool> tools, double dt) {
 
 void TissuePatches::press(Part& own, const MovingTool& tool, double dt) {
   const Eigen::Isometry3d to_rest = own.motion.inverse();
-  meet_others(own);
+  neighbours_.meet(number(own));
   nodes_->release(number(own));
+  const std::vector<Vector3d>& beside = neighbours_.beside(number(own));
   moved_.clear();
   went_.clear();
   for (std::size_t i = 0; i < own.nodes.size(); ++i) {
     const Vector3d u = nodes_->displacement(own.nodes[i]), &rest = mesh_.rest[own.nodes[i]];
-    moved_.push_back(to_rest * (rest + u) - rest + own.beside[i]);
+    moved_.push_back(to_rest * (rest + u) - rest + beside[i]);
     went_.push_back(to_rest.linear() * (u - own.last[i]));
   }
   Patch::Step step{.before = to_rest * tool.before,
@@ -398,7 +361,7 @@ void TissuePatches::state(State& s) {
     own.patch.state(s);
     s.require(own.patch.fits(map_.size()), "the recorded state holds a patch that this body cannot have");
     s.value(own.motion.matrix());
-    s.value(own.sunk_by_others);
+    neighbours_.state(number(own), s);
     s.value(own.ease);
     s.value(own.depth);
     s.value(own.cut);

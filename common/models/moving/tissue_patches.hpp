@@ -13,6 +13,7 @@
 #include "common/dynamics/elastic_mesh.hpp"
 #include "common/models/moving/condensed_touch.hpp"
 #include "common/models/moving/inertial_response.hpp"
+#include "common/models/moving/neighbour_patches.hpp"
 #include "common/models/moving/tissue_nodes.hpp"
 #include "common/tool/moving_tool.hpp"
 
@@ -25,10 +26,8 @@ namespace palpate {
 ///   L = G + Phi (K - C) Phi^T,
 /// K being what the tissue has at rest beyond the half-space G (NearField), C its nodes' own compliance, and D how
 /// these give way within the step (TissueNodes): at rest that is the answer of the patch on tissue without inertia. A
-/// patch lies on both parts of a hybrid alike, and in the dents that others make. Those, and what the others' forces do
-/// to its nodes by K - C, it knows as they are pressed in the same step, but by no more than a small part of what the
-/// patches give way by: they would answer one another's change with a larger one. What has been cut open, and jaws, are
-/// left to contacts by points.
+/// patch lies on both parts of a hybrid alike, and in the dents that others make (NeighbourPatches). What has been cut
+/// open, and jaws, are left to contacts by points.
 class TissuePatches {
  public:
   /// `archive`: read with ArchivePart::surface; it and `settings` are looked at here alone. `still`: of a hybrid body,
@@ -87,8 +86,6 @@ class TissuePatches {
     std::vector<int> known;                                    ///< those that `world_give` is of
     std::vector<NodeGive> world_give, give;                    ///< as they are, and seen from rest
     std::vector<Eigen::Vector3d> last;                         ///< [m] their displacements after its last forces
-    std::vector<Eigen::Vector3d> beside;                       ///< [m] what other patches do to nodes beyond C
-    double sunk_by_others = 0;                                 ///< [1] of what it gives way by, were it by all of it
     OfCells ease{};                                            ///< [m] that it stands too deep, and is led out of
     OfCells depth{};                                           ///< [m] in the last step
     bool relaid = false;                                       ///< no step has been done since it was laid
@@ -96,12 +93,6 @@ class TissuePatches {
     double approach = 0;                                       ///< [m] its way in this tick
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero();         ///< [N s] of the tick, on the tissue
     TouchContact contact;                                      ///< of the last tick
-  };
-
-  /// [m] What another patch does to the one that is looked at, beyond what the nodes do.
-  struct Met {
-    OfCells dents{};
-    std::vector<Eigen::Vector3d> moved;  ///< per node under it
   };
 
   /// A surface that tools meet, and of its triangles those of map_.
@@ -118,9 +109,6 @@ class TissuePatches {
   void find_give(Part& own);
   void lay(Part& own, const MovingTool& tool, const Loose& loose);
   static void come_loose(const Part& own, double share, std::span<const PatchForce> forces, const Loose& loose);
-  void meet_others(Part& own);
-  static bool meet(const Part& own, const Part& other);
-  double find_met(Part& own, const Part& other);
   void lift(Part& own);
   void let_go(Part& own, const Loose& loose);
   void ease_in(Part& own, std::span<const double> depth) const;
@@ -141,7 +129,7 @@ class TissuePatches {
   HalfSpace material_;
   PatchGrids grids_;
   std::vector<Part> parts_;
-  std::vector<Met> met_;  ///< one a part
+  NeighbourPatches neighbours_;
   std::vector<Eigen::Vector3d> moved_, went_;
   std::vector<PatchForce> forces_;
   std::vector<int> ground_of_node_;        ///< per node: the one that knows where it is
