@@ -187,6 +187,12 @@ TEST_F(ToolsFilm, OfAReportThatIsStoppedNothingIsLeft) {
   EXPECT_FALSE(fs::exists(folder));
 }
 
+TEST_F(ToolsFilm, AReportOfALogThatIsNotThereMakesNoFolder) {
+  const std::string folder = *folder_ / "none";
+  EXPECT_EQ(run_program(fmt::format("{} report {}.lcmlog -o {}", program("palpate"), folder, folder)).status, 1);
+  EXPECT_FALSE(fs::exists(folder));
+}
+
 TEST_F(ToolsFilm, StoppedByCtrlCThereIsNoFilm) {
   const fs::path said = *folder_ / "said";
   ChildProcess drawing(

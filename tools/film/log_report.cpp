@@ -51,20 +51,23 @@ std::vector<std::string> other_files(const LogReportSettings& s) {
 /// A report that does not come to its end leaves nothing that looks like one.
 class Unfinished {
  public:
-  explicit Unfinished(const LogReportSettings& settings) : settings_(settings) {}
+  /// Before there is a folder.
+  explicit Unfinished(const LogReportSettings& settings) : settings_(settings), makes_(!fs::exists(settings.folder)) {}
   ~Unfinished() {
-    if (!begun_) return;
     std::error_code ignored;
-    fs::remove(settings_.folder / course_name(0), ignored);
-    for (const std::string& name : other_files(settings_)) fs::remove(settings_.folder / name, ignored);
-    fs::remove(settings_.folder, ignored);  // where nothing else is in it
+    if (begun_) {
+      fs::remove(settings_.folder / course_name(0), ignored);
+      for (const std::string& name : other_files(settings_)) fs::remove(settings_.folder / name, ignored);
+    }
+    if (makes_) fs::remove(settings_.folder, ignored);  // where nothing else is in it
   }
   Unfinished(const Unfinished&) = delete;
   void begin() { begun_ = true; }
-  void end() { begun_ = false; }
+  void end() { begun_ = makes_ = false; }
 
  private:
   const LogReportSettings& settings_;
+  bool makes_;
   bool begun_ = false;
 };
 
@@ -161,8 +164,8 @@ ordered_json report_of(const LogReportSettings& s, std::size_t session, Unfinish
 
 std::vector<std::string> report_logs(const LogReportSettings& s,
                                      const std::function<void(const std::string&)>& progress) {
-  prepare_folder(s.folder, {course_name(0), kCourseHead}, other_files(s));
   Unfinished unfinished(s);
+  prepare_folder(s.folder, {course_name(0), kCourseHead}, other_files(s));
   ordered_json all{{"sessions", ordered_json::array()}};
   std::vector<std::string> lacks;
   for (std::size_t i = 0; i < s.logs.size(); ++i) {

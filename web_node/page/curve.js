@@ -3,6 +3,7 @@ import { forceMark, forceUnit } from './units.js';
 
 const seconds = 10, gap = 0.4;  // [s]; samples that are further apart are not joined
 const least = 0.005;  // [N] of the scale
+const overTop = 14;  // [px] room for words
 export const inks = ['#ffb454', '#6fc3ff', '#9be564', '#ff7ab8', '#c9a6ff', '#5fe0c9', '#ffd866', '#ff8a65'];
 
 export class Curve {
@@ -32,7 +33,8 @@ export class Curve {
     const to = canvas.getContext('2d'), end = points.at(-1)?.t ?? 0;
     to.clearRect(0, 0, width, height);
     const top = roundUp(Math.max(least, ...points.map((p) => Math.max(...p.forces, 0))));
-    const x = (t) => width * (1 - (end - t) / seconds), y = (f) => height * (0.96 - 0.86 * f / top);
+    const bottom = 0.96 * height, tall = bottom - overTop * ratio;
+    const x = (t) => width * (1 - (end - t) / seconds), y = (f) => bottom - tall * f / top;
     this.grid(to, width, y, top, ratio);
     to.lineWidth = 1.6 * ratio;
     (points[0]?.forces ?? []).forEach((_, tool) => {
@@ -53,7 +55,7 @@ export class Curve {
     to.fillStyle = '#a29d95';
     to.strokeStyle = '#35312c';
     to.lineWidth = ratio;
-    const word = (f) => Math.max(y(f) - 3 * ratio, 10 * ratio);  // the highest one stays in the picture
+    const word = (f) => y(f) - 3 * ratio;
     for (const f of [0, 0.5 * top, top]) {
       to.beginPath();
       to.moveTo(0, y(f));
