@@ -16,10 +16,12 @@ bool long_form() {
   return std::getenv("PALPATE_LONG_TESTS") != nullptr;
 }
 
-/// So many messages, or with keys, where who sends them signs and encrypts them for as long again, a third of them:
-/// what a name costs a node is judged more closely where all is open. The long form has all of them in both.
+/// So many messages. With keys a part of them: who sends them signs and encrypts them for as long again, and sends
+/// again what the nodes, which do as much, have no time for. What a name costs a node is judged more closely where all
+/// is open.
 int flood_of(int messages, bool with_keys) {
-  return with_keys && !long_form() ? messages / 3 : messages;
+  if (!with_keys) return messages;
+  return long_form() ? messages / 10 : messages / 3;
 }
 
 TEST_P(Hostile, ToolsWithoutNumberCostNoMemory) {
