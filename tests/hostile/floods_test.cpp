@@ -16,12 +16,10 @@ bool long_form() {
   return std::getenv("PALPATE_LONG_TESTS") != nullptr;
 }
 
-/// So many messages. With keys a part of them: who sends them signs and encrypts them for as long again, and sends
-/// again what the nodes, which do as much, have no time for. What a name costs a node is judged more closely where all
-/// is open.
+/// So many messages, or with keys, where who sends them signs and encrypts them for as long again, a third of them:
+/// what a name costs a node is judged more closely where all is open. The long form has all of them in both.
 int flood_of(int messages, bool with_keys) {
-  if (!with_keys) return messages;
-  return long_form() ? messages / 10 : messages / 3;
+  return with_keys && !long_form() ? messages / 3 : messages;
 }
 
 TEST_P(Hostile, ToolsWithoutNumberCostNoMemory) {
