@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -71,7 +72,14 @@ TEST_F(ClosedLoopCases, OfMovingTissueGiveTheSameRowEachTime) {
 // What each quick point is expected to be, where that is not plain `stable`.
 
 TEST(StabilityCases, Materials) {
-  check(material_points({.quick = true}), {{"young|E [Pa]|1e+12", "regularised"}});
+  check(material_points({.quick = true}), {{"young|E [Pa]|1e+12", "regularised"}, {"poisson|nu [1]|0.5", "refused"}});
+}
+TEST(StabilityCases, AMaterialIsRefusedForWhatItIs) {
+  const std::vector<Point> points = material_points({.quick = true});
+  const auto refused = std::ranges::find(points, "0.5", &Point::value);
+  ASSERT_NE(refused, points.end());
+  const Row row = run_guarded(*refused);
+  EXPECT_NE(row.note.find("poisson"), std::string::npos) << row.note;
 }
 TEST(StabilityCases, Geometry) {
   check(geometry_points({.quick = true}), {{"units|size of the block / 0.1 m [1]|1e+06", "regularised"}});

@@ -58,18 +58,18 @@ std::vector<Point> material_points(const Extent& extent) {
                             },
                             block_mesh());
                       }});
-  for (double nu : extent.quick ? std::vector{0.4999999}
+  for (double nu : extent.quick ? std::vector{0.4999999, 0.5}
                                 : std::vector{-0.9, 0.0, 0.45, 0.49, 0.499, 0.4999, 0.49999, 0.499999, 0.4999999, 0.5})
-    points.push_back(
-        {"poisson", "nu [1]", fmt::format("{:.7g}", nu), [nu] {
-           if (!(nu < 0.5)) {  // as a scene would say it
-             const std::string text = fmt::format(
-                 "[[body]]\nname = \"a\"\nmesh = \"a.msh\"\nmodel = \"quasi_static\"\nyoung = 1000\npoisson = {}\n",
-                 nu);
-             parse_scene(text, "a.toml");
-           }
-           return press_block([nu](Scene& s) { block_of(s).material.poisson = nu; }, block_mesh());
-         }});
+    points.push_back({"poisson", "nu [1]", fmt::format("{:.7g}", nu), [nu] {
+                        if (!(nu < 0.5)) {  // as a scene would say it, before the mesh is read
+                          const std::string text = fmt::format(
+                              "[[body]]\nname = \"a\"\nmesh = \"/proc/self/exe\"\nmodel = \"quasi_static\"\nyoung = "
+                              "1000\npoisson = {}\n",
+                              nu);
+                          parse_scene(text, "a.toml");
+                        }
+                        return press_block([nu](Scene& s) { block_of(s).material.poisson = nu; }, block_mesh());
+                      }});
   return points;
 }
 
