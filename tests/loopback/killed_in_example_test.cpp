@@ -173,12 +173,12 @@ TEST_F(KilledInAnExample, WithoutThatATouchMapsNothingLarge) {
   EXPECT_TRUE(grown < kMapped || kSanitized);
 }
 
-// In the suite it runs alone: beside others its tissue has no core.
+// In the suite it runs alone: beside others its tissue is late.
 TEST_F(LeftAloneInAnExample, ItIsFeltAsInLockStepEachTime) {
   if (testing::kSanitized) GTEST_SKIP() << "a sanitizer's tissue is slower than its ticks: MissedTicks.* are of that";
   for (int time = 0; time < (std::getenv("PALPATE_LONG_TESTS") ? 5 : 1); ++time) {
     const FeltByTools felt = least_late_run([](auto&, auto&) {});
-    if (felt.late > kLate) GTEST_SKIP() << "no core here for the tissue, which is " << felt.late << " s late";
+    if (felt.late > kLate) GTEST_SKIP() << "the tissue is " << felt.late << " s late, too much to compare";
     EXPECT_GT(felt.steps, static_cast<std::uint64_t>(kLast)) << time;
     for (int tool = 0; tool < kTools; ++tool) {
       fmt::print("tool {}: {:.4f} N in lock step, {:.4f} N with tissue {:.3f} s late\n", tool,
