@@ -16,6 +16,7 @@
 #include "tests/loopback/forces_of_runs.hpp"
 #include "tests/loopback/loopback_scene.hpp"
 #include "tests/realtime/resident.hpp"
+#include "tests/realtime/speed_watch.hpp"
 #include "tests/sanitized.hpp"
 #include "tests/tools/comes_within.hpp"
 #include "tools/shared/child_process.hpp"
@@ -48,18 +49,22 @@ constexpr auto kToEnd = std::numeric_limits<std::uint64_t>::max();
 // Of the largest force of forceps and scalpel, by which a run in real time may be off lock step where its tissue has
 // lost kLittle or less; twice that at kLate, in proportion between. Measured: the forceps' within 0.2 %; the scalpel's
 // 1.4 % more where the tissue lost 0.002 to 0.008 s in all, 4.5 % where it lost 0.07 s, up to 6 % at 0.09 s, 11 % at
-// 0.15 s.
+// 0.15 s; later than kLate up to 2 % more, and half as much once in seven runs.
 constexpr std::array kAlike{0.05, 0.1};
 constexpr double kLittle = 0.1, kLate = 0.2;  // [s] that the tissue may lose in such a run
-constexpr std::uint64_t kInAir = 500;         // step: the scalpel comes down
-constexpr auto kUntilTouched = 3s;  // after it, tissue is touched and what is near the tools has been solved for
-constexpr double kMapped = 32;      // [MB] that may come to be resident meanwhile; what is mapped holds up the loop
+// Of what the machine's cores lose of their computing, by which the tissue may be late: 0.12 to 0.33 measured, where a
+// host clocked them at a twelfth for 7 to 30 ms at a time, and they lost 0.5 to 1.9 s of 16.
+constexpr double kLateOfLost = 0.5;
+constexpr std::uint64_t kInAir = 500;  // step: the scalpel comes down
+constexpr auto kUntilTouched = 3s;     // after it, tissue is touched and what is near the tools has been solved for
+constexpr double kMapped = 32;         // [MB] that may come to be resident meanwhile; what is mapped holds up the loop
 
 /// The largest force of each tool until a step, the largest of all, and the largest change of one in a step [N].
 struct FeltByTools {
   std::array<double, kTools> force{};
   double later = 0, change = 0;
   double late = 0;  ///< [s] the tissue at most, by the reckoning of each deformation node that was there
+  double lost = 0;  ///< [s] of computing that this machine's cores lost meanwhile
   std::uint64_t steps = 0;
 };
 
@@ -111,6 +116,7 @@ class InAnExample : public ::testing::Test {
   template <class Meanwhile>
   FeltByTools run(Meanwhile&& meanwhile, std::uint64_t until = kToEnd) {
     const std::string file = folder_ / "run.lcmlog";
+    const SpeedWatch speed;
     ChildProcess recorder("palpate", {program("palpate"), "record", "--keep", "everything", "--force", "-o", file,
                                       "--domain", std::to_string(own_domain())});
     auto deform = std::make_unique<ChildProcess>(node("deform_node"));
@@ -120,7 +126,10 @@ class InAnExample : public ::testing::Test {
     EXPECT_TRUE(haptic.wait(60s)) << "its script ends";
     recorder.interrupt();
     EXPECT_TRUE(recorder.wait(10s));
-    return felt_by_tools_in(file, until);
+    const double lost = speed.lost();
+    FeltByTools felt = felt_by_tools_in(file, until);
+    felt.lost = lost;
+    return felt;
   }
   /// The same, where the tissue fell behind the least late of three runs.
   template <class Meanwhile>
@@ -178,13 +187,17 @@ TEST_F(LeftAloneInAnExample, ItIsFeltAsInLockStepEachTime) {
   if (testing::kSanitized) GTEST_SKIP() << "a sanitizer's tissue is slower than its ticks: MissedTicks.* are of that";
   for (int time = 0; time < (std::getenv("PALPATE_LONG_TESTS") ? 5 : 1); ++time) {
     const FeltByTools felt = least_late_run([](auto&, auto&) {});
-    if (felt.late > kLate) GTEST_SKIP() << "the tissue is " << felt.late << " s late, too much to compare";
+    EXPECT_LT(felt.late, kLittle + kLateOfLost * felt.lost) << "[s] it is the program that makes the tissue late";
     EXPECT_GT(felt.steps, static_cast<std::uint64_t>(kLast)) << time;
     for (int tool = 0; tool < kTools; ++tool) {
-      fmt::print("tool {}: {:.4f} N in lock step, {:.4f} N with tissue {:.3f} s late\n", tool,
-                 undisturbed().force[tool], felt.force[tool], felt.late);
+      fmt::print("tool {}: {:.4f} N in lock step, {:.4f} N with tissue {:.3f} s late; cores lost {:.2f} s\n", tool,
+                 undisturbed().force[tool], felt.force[tool], felt.late, felt.lost);
       const double off = alike(kAlike[tool], felt) * undisturbed().force[tool];
-      EXPECT_NEAR(felt.force[tool], undisturbed().force[tool], off) << time;
+      EXPECT_LE(felt.force[tool], undisturbed().force[tool] + off) << time;
+      // Later than that, less may be felt of it.
+      if (felt.late <= kLate) {
+        EXPECT_GE(felt.force[tool], undisturbed().force[tool] - off) << time;
+      }
     }
   }
 }
