@@ -143,7 +143,7 @@ TVCG99 = [
          "As printed, the sign in α moves the point up to 3 times too far; with it mended three nodes are held where one point is: too stiff. Where the tip slides its force jumps, and which way is up to the last digits of the tensors. `contact.rule = \"alpha\"` keeps it for comparison.",
          tuple(f"palpate drive scenes/liver.toml --seconds 3.2 --set contact.rule={rule} --json" for rule in ("alpha", "barycentric", "patch")),
          values=lambda run: {rule: run.figures(i)["tool.probe.force.max"] for i, rule in enumerate(("alpha", "barycentric", "patch"))},
-         judged={"alpha": (0.6, 0.75), "barycentric": (0.5, 0.62), "patch": (0.42, 0.48)}),
+         judged={"alpha": (0.6, 0.75), "barycentric": (0.5, 0.62), "patch": (0.39, 0.44)}),
     Item("TVCG99", "sec. 6-1, fig. 13", "A constant displacement on the cylinder's top: the simulated force and the widening at mid-height lie on the experimental curves exactly.",
          "At 10, 20 and 30 % compression the force is within {force_error:.1%} of the curve and the mean widening at mid-height within {radial_error:.2%}.",
          "The press is prescribed, as theirs; a plate as a tool is a tip of 200 m radius, which is flat to 0.6 µm over the top (`tests/sim/brain_cylinder_test.cpp` runs it through the haptic step). "

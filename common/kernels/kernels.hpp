@@ -111,11 +111,11 @@ struct Table {
   void (*corotated_f)(const TetQuad<float>* quads, int count, const float* u, float* force);
   void (*corotated_d)(const TetQuad<double>* quads, int count, const double* u, double* force);
 
-  /// out[(3 a + b) 7 ..] = integral over triangle s of L_a(x), integral over t of L_b(y), K(x - y) dy dx [m^3], L being
-  /// the barycentric coordinates and K = (1 - poisson)/r I + poisson/r^3 h h^T, h the part of x - y across `normal`
-  /// (unit): the isotropic number, then xx, yy, zz, xy, xz, yz of the rest. `s`, `t`: x, y, z [m] of three corners
-  /// each. Where the triangles are near each other the inner integral is taken in polar coordinates about x, in which
-  /// 1/r is no singularity.
+  /// out[(3 a + b) 10 ..] = integral over triangle s of L_a(x), integral over t of L_b(y), K(x - y) dy dx [m^3], L
+  /// being the barycentric coordinates and K = (1 - poisson)/r I + poisson/r^3 h h^T, h the part of x - y across
+  /// `normal` (unit): the isotropic number, then xx, yy, zz, xy, xz, yz of the rest, and likewise of h / r^2 its x, y,
+  /// z. `s`, `t`: x, y, z [m] of three corners each. Where the triangles are near each other the inner integral is
+  /// taken in polar coordinates about x, in which 1/r is no singularity.
   void (*kernel_moments)(const double* s, const double* t, const double* normal, double poisson, double* out);
 };
 

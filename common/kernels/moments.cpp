@@ -7,7 +7,7 @@ namespace {
 
 using V = Pack<double>;
 constexpr int kWidth = Vector<double>::kWidth;
-constexpr int kKernel = 7;  // isotropic; xx, yy, zz, xy, xz, yz of what is added to it
+constexpr int kKernel = 10;  // isotropic; xx, yy, zz, xy, xz, yz of what is added to it; x, y, z of h
 
 // Between two triangles' middles, in sums of their radii: beyond the first plain quadrature serves; within the second
 // they have an edge in common, or are one.
@@ -86,7 +86,8 @@ struct Sums {
     const Points h = d - dot(d, of.normal) * of.normal;
     const V bx = stretch * h.x, by = stretch * h.y;
     const V k[kKernel] = {
-        V{} + (1 - of.poisson), h.x * bx, h.y * by, h.z * (stretch * h.z), h.x * by, h.z * bx, h.z * by};
+        V{} + (1 - of.poisson), h.x * bx,     h.y * by,    h.z * (stretch * h.z), h.x * by, h.z * bx, h.z * by,
+        over_r * h.x,           over_r * h.y, over_r * h.z};
     for (int c = 0; c < 3; ++c)
       for (int i = 0; i < kKernel; ++i) at[c][i] += share[c] * k[i];
   }
@@ -129,7 +130,8 @@ inline V exp_asinh(V x) {
 
 /// The integral over t of L_b(y) K(x - y), for each x on it or near it: t is the signed sum of three triangles with a
 /// corner below x, y = foot + s (edge point - foot) in each. r = |x - y| in place of s, and asinh of the way along the
-/// edge over the foot's distance from it, leave no singularity, on the plane of t or off it.
+/// edge over the foot's distance from it, leave no singularity, on the plane of t or off it; r goes by squares, so that
+/// s is smooth too.
 inline void near_integral(const Surface& of, const Points& x, const Corners& t, Sums& sums) {
   const Point up = 1 / (2 * t.area) * cross(t.at[1] - t.at[0], t.at[2] - t.at[0]);
   const V signed_height = dot(x - t.at[0], up), height = signed_height < 0 ? -signed_height : signed_height;
@@ -157,8 +159,8 @@ inline void near_integral(const Surface& of, const Points& x, const Corners& t, 
       const V area = sign * kNodeWeight[i] * whole * distance * over_rho * range;  // over r
       const Points reach = out[e] + u * edge;
       for (int j = 0; j < kGauss; ++j) {
-        const V beyond = kNode[j] * range, r = height + beyond, s = root(beyond * (r + height)) * over_rho;
-        const V by = kNodeWeight[j] * area;
+        const V r = height + kNode[j] * kNode[j] * range, s = kNode[j] * root(range * (r + height)) * over_rho;
+        const V by = 2 * kNode[j] * kNodeWeight[j] * area;
         V share[3];
         share[e] = by * (of_foot[e] + s * (1 - u - of_foot[e]));
         share[next] = by * (of_foot[next] + s * (u - of_foot[next]));

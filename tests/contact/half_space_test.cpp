@@ -37,6 +37,7 @@ TEST(HalfSpace, AShearedSquareAgreesWithQuadrature) {
   const double edge = 0.002, x = 0.0017, y = -0.0006;
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   double pressed = 0;
+  Eigen::Vector2d into(0, 0), drawn(0, 0);
   constexpr int kCells = 400;
   for (int i = 0; i < kCells; ++i)
     for (int j = 0; j < kCells; ++j) {
@@ -44,9 +45,18 @@ TEST(HalfSpace, AShearedSquareAgreesWithQuadrature) {
       const Matrix3d k = kTissue.at({x - px, y - py, 0}, Vector3d::UnitZ()) * edge * edge / (kCells * kCells);
       sum += k.topLeftCorner<2, 2>();
       pressed += k(2, 2);
+      into -= k.bottomLeftCorner<1, 2>().transpose();
+      drawn -= k.topRightCorner<2, 1>();  // what presses points downwards
     }
   EXPECT_LT((kTissue.sheared(x, y, edge) - sum).norm(), 1e-4 * sum.norm());
   EXPECT_NEAR(kTissue.pressed(x, y, edge), pressed, 1e-4 * pressed);
+  EXPECT_LT((kTissue.crossed(x, y, edge) - into).norm(), 1e-4 * pressed);
+  EXPECT_LT((kTissue.crossed(x, y, edge) + drawn).norm(), 1e-4 * pressed);
+  EXPECT_LT(drawn.dot(Eigen::Vector2d(x, y)), 0) << "towards what presses";
+}
+
+TEST(HalfSpace, OfSquaresThatAreCompressedNothingIsDrawnAcrossWhereTheVolumeStays) {
+  EXPECT_EQ(HalfSpace(6000, 0.5).crossed(0.001, 0.002, 0.002).norm(), 0);
 }
 
 // The integral of 1/r between a unit square and itself is 2.97321 (Eidus and others, mean distance's inverse).

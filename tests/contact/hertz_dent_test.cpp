@@ -30,6 +30,9 @@ Vector3d by_squares(const HertzDent& dent, const Vector3d& place) {
       const Vector3d d = place - dent.middle - Vector3d(x, y, 0);
       sum.head<2>() += pressure * kDented.sheared(d.x(), d.y(), edge) * dent.force.head<2>();
       sum.z() += pressure * kDented.pressed(d.x(), d.y(), edge) * dent.force.z();
+      const Eigen::Vector2d crossed = pressure * kDented.crossed(d.x(), d.y(), edge);
+      sum.head<2>() += dent.force.z() * crossed;
+      sum.z() -= crossed.dot(dent.force.head<2>());
       all += pressure * edge * edge;
     }
   return sum / all;
@@ -70,7 +73,7 @@ TEST(HertzDent, FadesOutTowardsItsReachAndKnowsNothingOfAnotherSide) {
 }
 
 TEST(HertzDent, ItsSlopeIsThatOfItsRise) {
-  const HertzDent dent = dent_of(-0.1 * kUp, 0.01);
+  const HertzDent dent = dent_of({0.05, -0.02, -0.1}, 0.01);
   for (const double r : {0.001, 0.0029, 0.004, 0.007, 0.009}) {
     const Vector3d place = dent.middle + r * Vector3d(0.6, 0.8, 0), step(1e-7, 0, 0);
     const double by_differences =

@@ -95,7 +95,7 @@ TEST_P(EndedPress, TakesTheForceToZeroBeforeTheHapticNodeIsGone) {
   });
   heard = rig.hear(20s, [](const ForceState&) { return true; });
   ForceState last;
-  const bool pressed = rig.hear(20s, [&](const ForceState& f) { return last = f, newtons(f) > 0.45; });
+  const bool pressed = rig.hear(20s, [&](const ForceState& f) { return last = f, newtons(f) > 0.42; });
   const double before = newtons(last);
   EXPECT_TRUE(pressed && rig.end(GetParam()));
   double change = 0;

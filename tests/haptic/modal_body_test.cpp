@@ -60,6 +60,7 @@ TEST(ModalBody, AtRestUnderATipItPushesAsAQuasiStaticBodyDoes) {
   QuasiStaticSpec body;
   static_cast<MeshedSpec&>(body) = *as<MeshedSpec>(still.scene.bodies[0]);
   still.scene.bodies[0] = body;
+  still.scene.contact.rule = ContactRule::barycentric;
   HapticStep quasi_static(still.scene, still.archives);
   quasi_static.start(std::array{modal.at(0.002)});
   for (int i = 0; i <= 300; ++i) quasi_static.step(std::array{modal.at(0.002 - 1e-5 * i)});

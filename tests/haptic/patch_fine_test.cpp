@@ -4,6 +4,7 @@
 #include "bench/touch_block.hpp"
 #include "common/contact/patch/hat_kernel.hpp"
 #include "common/contact/patch/patch_touch.hpp"
+#include "tests/haptic/sphere_on_half_space.hpp"
 #include "tests/haptic/synthetic_body.hpp"
 #include "tools/rig/press_rig.hpp"
 
@@ -16,17 +17,8 @@ using Eigen::Vector3d;
 constexpr double kEdge = kTipRadius / 8;
 constexpr int kNodes = 23;  // a side, which is enough for a tip within two edges of the middle
 
-/// [N] Of a rigid sphere on a half-space, in closed form (Sneddon, 1965), with x the contact's radius over the
-/// sphere's:
-///   depth = R x atanh x          F = E R^2 / (1 - nu^2) ((1 + x^2) atanh x - x)
 double exact(double depth) {
-  double low = 0, high = 0.999;
-  for (int i = 0; i < 60; ++i) {
-    const double x = 0.5 * (low + high);
-    (kTipRadius * x * std::atanh(x) < depth ? low : high) = x;
-  }
-  return bench::kBlockYoung * kTipRadius * kTipRadius / (1 - bench::kBlockPoisson * bench::kBlockPoisson) *
-         ((1 + low * low) * std::atanh(low) - low);
+  return testing::SphereOnHalfSpace(kTipRadius, bench::kBlockYoung, bench::kBlockPoisson).force(depth);
 }
 
 /// The half-space itself among the nodes of a flat square.

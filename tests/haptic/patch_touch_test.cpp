@@ -39,15 +39,15 @@ class PatchRule : public ::testing::Test {
 };
 std::unique_ptr<PatchBlock> PatchRule::block_;
 
-// A mesh of an eighth of the radius converges to 1.03 to 1.07 (docs/contact.md); the rule of the mesh gives two to
-// three times Hertz.
-TEST_F(PatchRule, IsNearHertzAtAnyPlaceOfATriangle) {
-  for (const double depth : {0.25 * PatchBlock::kRadius, 0.5 * PatchBlock::kRadius})
+// What a mesh converges to over Hertz (docs/contact.md); the rule of the mesh gives two to three times that.
+TEST_F(PatchRule, IsNearTheConvergedForceAtAnyPlaceOfATriangle) {
+  for (const auto& [depth, converged] :
+       {std::pair{0.25 * PatchBlock::kRadius, 1.070}, {0.5 * PatchBlock::kRadius, 1.037}})
     for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.004, 0.001}, {0.006, 0.006}, {-0.011, 0.003}}) {
       PressRig rig = PatchRule::rig(0);
       rig.start(at(x, y, -0.001));
       for (int i = 1; i <= 100; ++i) rig.step(at(x, y, -0.001 + (depth + 0.001) * i / 100));
-      EXPECT_NEAR(-rig.force().z() / hertz(depth), 1.05, 0.03) << x << " " << y << " " << depth;
+      EXPECT_NEAR(-rig.force().z() / hertz(depth), converged, 0.03 * converged) << x << " " << y << " " << depth;
     }
 }
 
@@ -139,7 +139,11 @@ TEST_F(PatchRule, AHeldTipIsHeldByTheSameForce) {
   PressRig rig = PatchRule::rig(0.3);
   rig.start(at(0, 0, -0.001));
   for (int i = 0; i <= 100; ++i) rig.step(at(1e-5 * i, 0, 3e-5 * i));
+  const Vector3d moving = rig.force();
+  // The tissue is lifted by the shear of the step before.
+  for (int i = 0; i < 3; ++i) rig.step(at(1e-3, 0, 3e-3));
   const Vector3d held = rig.force();
+  EXPECT_LT((held - moving).norm(), 1e-4 * held.norm());
   for (int i = 0; i < 100; ++i) {
     rig.step(at(1e-3, 0, 3e-3));
     EXPECT_LT((rig.force() - held).norm(), 1e-6 * held.norm());

@@ -9,7 +9,7 @@ namespace {
 
 using KernelMoments = EveryPath;
 using Triangle = std::array<std::array<double, 3>, 3>;
-using Moments = std::array<std::array<std::array<double, 7>, 3>, 3>;
+using Moments = std::array<std::array<std::array<double, 10>, 3>, 3>;
 
 constexpr double kPoisson = 0.45;
 constexpr std::array<double, 3> kNormal{0.6, 0, 0.8};
@@ -46,12 +46,12 @@ Moments by_definition(const Triangle& s, const Triangle& t, int n) {
       const double up = d[0] * kNormal[0] + d[1] * kNormal[1] + d[2] * kNormal[2];
       std::array<double, 3> h;
       for (int i = 0; i < 3; ++i) h[i] = d[i] - up * kNormal[i];
-      const double k[7] = {(1 - kPoisson) / r, h[0] * h[0], h[1] * h[1], h[2] * h[2],
-                           h[0] * h[1],        h[0] * h[2], h[1] * h[2]};
+      const double k[10] = {(1 - kPoisson) / r, h[0] * h[0], h[1] * h[1], h[2] * h[2], h[0] * h[1],
+                            h[0] * h[2],        h[1] * h[2], h[0],        h[1],        h[2]};
       for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b)
-          for (int i = 0; i < 7; ++i)
-            sum[a][b][i] += weight * x[a] * y[b] * k[i] * (i == 0 ? 1 : kPoisson / (r * r * r));
+          for (int i = 0; i < 10; ++i)
+            sum[a][b][i] += weight * x[a] * y[b] * k[i] * (i == 0 ? 1 : i < 7 ? kPoisson / (r * r * r) : 1 / (r * r));
     }
   return sum;
 }
@@ -65,7 +65,7 @@ Moments by_kernel(const Table& table, const Triangle& s, const Triangle& t) {
 void expect_near(const Moments& seen, const Moments& exact, double share) {
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b)
-      for (int i = 0; i < 7; ++i)
+      for (int i = 0; i < 10; ++i)
         EXPECT_NEAR(seen[a][b][i], exact[a][b][i], share * exact[a][b][0]) << a << " " << b << " " << i;
 }
 

@@ -94,18 +94,19 @@ def press_by_mouse(options, arguments):
         for _ in range(10):
             views.wheel(page, 5)
         page.wait("palpate.hand.depth === 0.03", 3)  # no further than the slider
-        for _ in range(50):
+        for _ in range(68):
             page.get("palpate.hand.depth += 0.0006")
-            time.sleep(0.02)
+            time.sleep(0.03)
         deep = page.get("palpate.hand.depth")
-        time.sleep(0.5)
+        time.sleep(2)
         pulled, lag = page.get(FORCE), page.get(LAG)
         print(f"led {1e3 * deep:.0f} mm deep the tip stays {1e3 * lag:.0f} mm behind, with {pulled:.2f} N")
         expect(1.9 < pulled < 2.1 and lag > 0.01, (pulled, lag))
         page.let_go(0.45, 0.6)
         page.wait(f"{FORCE} < 0.01 && {LAG} < 0.001", 6)
         told = page.wait(f"{HANDLING}.match(/ s, path \\d{{2,}} mm, peak ([\\d.]+)\\sN/)?.[1]", 3)
-        expect(abs(float(told) - pulled) < 0.02, (told, pulled))
+        peak = page.get("Math.max(...palpate.curve.points.map((p) => p.forces[0]))")  # led on, it pulls by its damper too
+        expect(pulled < peak + 0.02 < pulled + 0.2 and abs(float(told) - peak) < 0.02, (told, peak, pulled))
         curve = page.browser.execute_async_script(SMALL_CURVE)
         expect(curve == [["0 mN", "10 mN", "20 mN"], 2], curve)
         expect(not page.errors(), page.errors())

@@ -6,16 +6,14 @@
 
 namespace palpate {
 
-/// An elastic half-space under tractions on its plane surface (Boussinesq 1885, Cerruti 1882). A normal traction moves
-/// the surface along the normal, a shear one within the surface; what each does across, in proportion to 1 - 2 nu, is
-/// left out.
+/// An elastic half-space under tractions on its plane surface (Boussinesq 1885, Cerruti 1882).
 struct HalfSpace {
   double young = 1;    ///< [Pa]
   double poisson = 0;  ///< [1]
 
   double scale() const;  ///< [1/Pa] (1 + nu) / (pi E), which all of this is in proportion to
 
-  /// [m/N] displacement at `d` [m] from a unit point force; `normal` is the surface's. Infinite at d = 0.
+  /// [m/N] displacement at `d` [m] from a unit point force; `normal` is the surface's, outward. Infinite at d = 0.
   Eigen::Matrix3d at(const Eigen::Vector3d& d, const Eigen::Vector3d& normal) const;
 
   /// What a rectangle's corner at (x, y) [m] gives to what the tractions on all of it do [m]: the sums over its
@@ -32,6 +30,11 @@ struct HalfSpace {
   double pressed(double x, double y, double a) const;
   /// [m/Pa] within the surface, likewise, per unit shear along x and y.
   Eigen::Matrix2d sheared(double x, double y, double a) const;
+  /// [m/Pa] Into the surface, likewise; along x and y per unit pressure it is the opposite: tissue that can be
+  /// compressed is drawn towards what presses.
+  Eigen::Vector2d crossed(double x, double y, double a) const;
+  /// [m/Pa] The same, of a rectangle, as the sum over its corners (see Corner).
+  Eigen::Vector2d crossed_corner(double x, double y) const;
 };
 
 /// Moments of the half-space's kernel between two triangles of a surface.

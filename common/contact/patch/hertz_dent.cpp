@@ -31,6 +31,17 @@ Potential potential(double r, double a) {
           per * ((a * a - 0.25 * r * r) * angle + beside * (0.25 + 0.5 * square))};
 }
 
+/// Of the same pressures the part within the circle of radius r, over r^2 [1/m^2], and the slope of that [1/m^3].
+struct Enclosed {
+  double value, slope;
+};
+
+Enclosed enclosed(double r, double a) {
+  if (r >= a) return {1 / (r * r), -2 / (r * r * r)};
+  const double left = std::sqrt(1 - r * r / (a * a)), square = a * a * (1 + left);
+  return {(1 + left + left * left) / square, -r * (2 + left) / (square * square)};
+}
+
 /// The surface's normal about a place and the middle of a dent; zero where they look away from each other.
 Vector3d common_normal(const Vector3d& a, const Vector3d& b) {
   return a.dot(b) > 0 ? Vector3d((a + b).normalized()) : Vector3d::Zero();
@@ -49,7 +60,8 @@ double HertzDent::share(const Vector3d& place) const {
 }
 
 // Shear moves the surface by the second derivatives of the potential of p * distance, as Cerruti's kernel is made of
-// those of the distance.
+// those of the distance. What pressure does across and shear along the normal is what a point force in the middle does,
+// of as much as lies within the circle.
 Vector3d HertzDent::field(const Vector3d& place, const Vector3d& normal) const {
   const Vector3d n = common_normal(normal, outward);
   if (n.isZero(0)) return n;
@@ -59,6 +71,7 @@ Vector3d HertzDent::field(const Vector3d& place, const Vector3d& normal) const {
   const Vector3d across = d - d.dot(n) * n, along = force.dot(n) * n, shear = force - along;
   Vector3d sum = (1 - nu) * value * along + (value - nu * half_mean) * shear;
   if (r > 0) sum -= nu * (value - 2 * half_mean) * across.dot(shear) / (r * r) * across;
+  sum += (0.5 - nu) * enclosed(r, disc).value * (n.dot(along) * across - across.dot(shear) * n);
   return half_space.scale() * sum;
 }
 
@@ -74,8 +87,12 @@ Vector3d HertzDent::slope(const Vector3d& place, const Vector3d& normal) const {
   const double s = std::clamp((1 - r / reach) / (1 - kWhole), 0.0, 1.0);
   const double part = s * s * (3 - 2 * s), fades = -6 * s * (1 - s) / (reach * (1 - kWhole));
   const auto [value, slope, half_mean] = potential(r, disc);
-  const double rise = half_space.scale() * (1 - half_space.poisson) * force.dot(n) * (part * slope + fades * value);
-  return rise / r * (d - d.dot(n) * n);
+  const auto [share, share_slope] = enclosed(r, disc);
+  const double nu = half_space.poisson;
+  const Vector3d across = d - d.dot(n) * n, shear = force - force.dot(n) * n;
+  const double grows = (1 - nu) * force.dot(n) * (part * slope + fades * value) -
+                       (0.5 - nu) * across.dot(shear) * (part * share_slope + fades * share);
+  return half_space.scale() * (grows / r * across - (0.5 - nu) * part * share * shear);
 }
 
 }  // namespace palpate

@@ -10,6 +10,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+constexpr double kAveraged = 1.5;  // radii about a node, at least
+
 /// Nodes of the triangles that can be touched.
 std::vector<bool> pressed_nodes(const SurfaceMap& map) {
   std::vector<bool> pressed(map.size(), false);
@@ -44,7 +46,8 @@ Averages averages_of(const SmoothSurface& surface, double radius, double resolve
   const SurfaceMap& map = surface.map();
   const std::vector<bool> pressed = pressed_nodes(map);
   std::vector<double> width;
-  for (int n = 0; n < map.size(); ++n) width.push_back(std::max(radius, resolved * std::sqrt(surface.weight(n))));
+  for (int n = 0; n < map.size(); ++n)
+    width.push_back(std::max(kAveraged * radius, resolved * std::sqrt(surface.weight(n))));
   Averages averages(map.size());
   const auto add = [&](int i, int k) {
     const double far = (map.position[i] - map.position[k]).squaredNorm() / (width[i] * width[i]);

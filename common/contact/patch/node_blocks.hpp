@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -12,6 +13,12 @@ class NodeBlocks {
  public:
   explicit NodeBlocks(int nodes) : nodes_(nodes), entries_(9 * static_cast<std::size_t>(nodes) * nodes, 0.0) {}
 
+  /// Nodes 0 ... end - 1 do not move one another.
+  void clear(int end) {
+    for (int j = 0; j < end; ++j)
+      for (int entry = 0; entry < 9; ++entry)
+        std::fill_n(&entries_[(9 * static_cast<std::size_t>(j) + entry) * nodes_], end, 0.0);
+  }
   /// Of the displacement of node i under a force on node j, and the other way round; of a node by itself the transpose
   /// of what is given.
   void set(int i, int j, const Eigen::Matrix3d& block) {
@@ -30,6 +37,15 @@ class NodeBlocks {
       const double x = xx[i] * fx + xy[i] * fy + xz[i] * fz, y = yx[i] * fx + yy[i] * fy + yz[i] * fz,
                    z = zx[i] * fx + (zy[i] * fy + zz[i] * fz);
       out[i] = nx * x + ny * y + nz * z;
+    }
+  }
+  /// Adds what a force [N] on node j does to nodes 0 ... end - 1 [m].
+  void add_moved(const Eigen::Vector3d& force, int j, int end, double* x, double* y, double* z) const {
+    double* const out[] = {x, y, z};
+    for (int row = 0; row < 3; ++row) {
+      const double *bx = entries(j, row, 0), *by = entries(j, row, 1), *bz = entries(j, row, 2);
+      double* const to = out[row];
+      for (int i = 0; i < end; ++i) to[i] += bx[i] * force.x() + by[i] * force.y() + bz[i] * force.z();
     }
   }
   /// sum += scale B_ij

@@ -16,7 +16,7 @@ constexpr double kPivotShare = 0.05;  // of a square's own compliance, to which 
 }  // namespace
 
 Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep)
-    : grid_(grid), max_nodes_(3 * grid.feet()), kernel_(grid), near_field_(max_nodes_) {
+    : grid_(grid), max_nodes_(3 * grid.feet()), nodes_give_(max_nodes_), kernel_(grid), near_field_(max_nodes_) {
   if (creep) memory_.emplace(grid, *creep);
   const std::size_t points = grid.size();
   normal_ = Vector3d::UnitZ();
@@ -35,13 +35,13 @@ Patch::Patch(const PatchGrid& grid, const std::optional<CreepStep>& creep)
   floor_.assign(ld, 0.0);
   rows_.reserve(points);
   nodes_.reserve(max_nodes_);
-  nodes_give_.assign(max_nodes_ * max_nodes_, 0.0);
   lifted_.reserve(max_nodes_);
+  lift_.assign(points, 0.0);
   known_.reserve(max_nodes_);
   place_.reserve(max_nodes_);
-  k_.assign(max_nodes_ * max_nodes_, 0.0);
+  for (std::vector<double>& moved : moved_places_) moved.assign(max_nodes_, 0.0);
+  direction_.assign(grid.feet(), normal_);
   k_feet_.assign(grid.feet() * grid.feet(), 0.0);
-  foot_to_node_.assign(max_nodes_ * grid.feet(), 0.0);
   forces_.resize(max_nodes_);
 }
 
@@ -52,6 +52,7 @@ void Patch::lift() {
   bent_.setZero();
   resumed_.setZero();
   force_.setZero();
+  shear_.setZero();
   pressing_ = depth_ = 0;
   if (memory_) memory_->forget();
 }
@@ -59,15 +60,14 @@ void Patch::lift() {
 void Patch::press(const Ground& ground, std::span<const Vector3d> moved, double less) {
   fill_near_field(ground.near_field);
   fill_normal();
-  lift_nodes(ground, {});
-  const Rise of_nodes = rise_of_nodes(moved);
+  lift_cells(ground, {});
   for (int p = 0; p < grid_.size(); ++p) {
     wanted_[p] = cells_[p].gap - cells_[p].dent - less;
     if (!laid(p)) {
       active_[p] = 0;
       continue;
     }
-    wanted_[p] -= rise(foot(p), of_nodes);
+    wanted_[p] -= rise(grid_.foot(p), moved) + lift_[p];
     if (memory_) wanted_[p] -= memory_->dent(p);
   }
   settle_pressures();
@@ -90,7 +90,7 @@ double Patch::middle_of_pressure() const {
 
 // Pressures act through the part's axis.
 Vector3d Patch::place_of_force() const {
-  return laid_at_ + middle_of_pressure() * (across_ + flank_.slope * normal_) + grid_.radius() * normal_;
+  return laid_at_ + middle_of_pressure() * (across_ + flank_.slope * normal_) + grid_.radius() * push_.normalized();
 }
 
 void Patch::lie_beside(const Patch& other) {
@@ -143,7 +143,7 @@ double Patch::sunk(const OfCells& dents, std::span<const Vector3d> moved) const 
     if (!(shares[p] > 0)) continue;
     const Foot& f = foot(p);
     sunk += shares[p] * dents[p];
-    for (int v = 0; v < 3; ++v) sunk += shares[p] * f.weights[v] * normal_.dot(moved[f.local[v]]);
+    for (int v = 0; v < 3; ++v) sunk += shares[p] * f.weights[v] * direction_[grid_.foot(p)].dot(moved[f.local[v]]);
   }
   return sunk;
 }
@@ -152,22 +152,33 @@ double Patch::softness() const {
   const int n = grid_.size();
   OfCells shares;
   find_shares(shares);
-  std::array<double, kMaxNodes> of_nodes{};
+  std::array<Vector3d, kMaxNodes> of_nodes;
+  of_nodes.fill(Vector3d::Zero());
   double soft = 0;
   for (int p = 0; p < n; ++p) {
     if (!(shares[p] > 0)) continue;
     for (int q = 0; q < n; ++q) soft += shares[p] * shares[q] * compliance_[p * n + q];
-    for (int v = 0; v < 3; ++v) of_nodes[foot(p).local[v]] += foot(p).weights[v] * shares[p];
+    for (int v = 0; v < 3; ++v)
+      of_nodes[foot(p).local[v]] += foot(p).weights[v] * shares[p] * direction_[grid_.foot(p)];
   }
   for (std::size_t i = 0; i < nodes_.size(); ++i)
-    for (std::size_t j = 0; of_nodes[i] != 0 && j < nodes_.size(); ++j)
-      soft -= of_nodes[i] * of_nodes[j] * nodes_give_[i * max_nodes_ + j];
+    for (std::size_t j = 0; !of_nodes[i].isZero(0) && j < nodes_.size(); ++j) {
+      Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+      nodes_give_.add(static_cast<int>(i), static_cast<int>(j), 1, block);
+      soft -= of_nodes[i].dot(block * of_nodes[j]);
+    }
   return soft;
 }
 
 void Patch::sum_pressures() {
   pressing_ = 0;
-  for (const double f : pressure_force_) pressing_ += f;
+  Vector3d sum = Vector3d::Zero();
+  for (int p = 0; p < grid_.size(); ++p) {
+    if (!(pressure_force_[p] > 0)) continue;
+    pressing_ += pressure_force_[p];
+    sum += pressure_force_[p] * direction_[grid_.foot(p)];
+  }
+  push_ = touches() ? Vector3d(sum / pressing_) : normal_;
 }
 
 void Patch::meet(const Ground& ground, std::span<const NodeGive> give) {
@@ -175,18 +186,19 @@ void Patch::meet(const Ground& ground, std::span<const NodeGive> give) {
   fill_normal();
   keep_positive();
   add_nodes_give(give);
-  lifted_.assign(nodes_.size(), 0.0);
+  std::ranges::fill(lift_, 0.0);
 }
 
-Patch::Rise Patch::rise_of_nodes(std::span<const Vector3d> moved) const {
-  Rise rise;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) rise[i] = normal_.dot(moved[i]) + lifted_[i];
-  return rise;
+Vector3d Patch::direction(int foot) const {
+  if (grid_.strip()) return normal_;
+  const Eigen::Vector2d lean = leans_ * grid_.lean(foot);
+  return normal_ + lean.x() * across_ + lean.y() * up_;
 }
 
-double Patch::rise(const Foot& f, const Rise& of_nodes) const {
+double Patch::rise(int foot, std::span<const Vector3d> moved) const {
+  const Foot& f = feet_[foot];
   double rise = 0;
-  for (int v = 0; v < 3; ++v) rise += f.weights[v] * of_nodes[f.local[v]];
+  for (int v = 0; v < 3; ++v) rise += f.weights[v] * direction_[foot].dot(moved[f.local[v]]);
   return rise;
 }
 
@@ -197,20 +209,19 @@ Vector3d Patch::on_axis(const Segment& axis, double along) const {
   return axis.at((along - across_.dot(axis.start - laid_at_)) / across_.dot(way));
 }
 
-// Within a tick the cells stay where they are on the tissue; the part goes on along the normal.
-double Patch::gap(int cell, const Step& step, const Rise& of_nodes) const {
+// Within a tick the cells stay where they are on the tissue; the part goes on.
+double Patch::gap(int cell, const Step& step) const {
   const double along = grid_.strip() ? cell_middle(grid_.column(cell)) : 0;
-  const double nearer = normal_.dot(on_axis(step.axis, along) - laid_at_) - flank_.slope * along;
-  return cells_[cell].gap + nearer - cells_[cell].dent - rise(foot(cell), of_nodes);
+  const double nearer = direction_[grid_.foot(cell)].dot(on_axis(step.axis, along) - laid_at_) - flank_.slope * along;
+  return cells_[cell].gap + nearer - cells_[cell].dent - rise(grid_.foot(cell), step.moved) - lift_[cell];
 }
 
 std::span<double> Patch::sink(const Ground& ground, const Step& step) {
-  lift_nodes(ground, step.give);
+  lift_cells(ground, step.give);
   bound_lift();
-  const Rise of_nodes = rise_of_nodes(step.moved);
   for (int p = 0; p < grid_.size(); ++p) {
     if (!laid(p)) active_[p] = 0;
-    wanted_[p] = laid(p) ? gap(p, step, of_nodes) : cells_[p].gap;
+    wanted_[p] = laid(p) ? gap(p, step) : cells_[p].gap;
   }
   return wanted_;
 }
@@ -218,7 +229,7 @@ std::span<double> Patch::sink(const Ground& ground, const Step& step) {
 void Patch::step(const Ground& ground, const Step& step) {
   settle_pressures();
   sum_pressures();
-  at_ = on_axis(step.axis, middle_of_pressure()) + grid_.radius() * normal_;
+  at_ = on_axis(step.axis, middle_of_pressure()) + grid_.radius() * push_.normalized();
   shear(ground, {at_ - step.before * (step.now.inverse() * at_), step.went, step.give});
 }
 
@@ -231,7 +242,7 @@ void Patch::remember(std::span<const Vector3d> moved) {
     wanted_[p] = 0;
     if (!laid(p)) continue;
     for (const int q : rows_) wanted_[p] += elastic * compliance_[p * n + q] * pressure_force_[q];
-    for (int v = 0; v < 3; ++v) wanted_[p] -= elastic * f.weights[v] * normal_.dot(moved[f.local[v]]);
+    for (int v = 0; v < 3; ++v) wanted_[p] -= elastic * f.weights[v] * direction_[grid_.foot(p)].dot(moved[f.local[v]]);
   }
   memory_->follow(wanted_, elastic * sheared_);
   memory_->slip(slip_, grid_.edge() * std::sqrt(static_cast<double>(rows_.size())));
@@ -300,6 +311,8 @@ void Patch::state(State& s) {
   s.value(resumed_);
   s.value(force_);
   s.value(pressing_);
+  s.value(push_);
+  s.value(shear_);
   s.all(pressure_force_);
   for (Cell& cell : cells_) s.value(cell.at);
   s.value(cell_length_);

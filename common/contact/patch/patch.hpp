@@ -116,8 +116,10 @@ class Patch {
   bool settled() const { return settled_; }
 
   bool touches() const { return pressing_ > 0; }
-  double depth() const { return depth_; }                    ///< [m] after lay(): the largest, at least 0
-  double pressing() const { return pressing_; }              ///< [N]
+  double depth() const { return depth_; }        ///< [m] after lay(): the largest, at least 0
+  double pressing() const { return pressing_; }  ///< [N] along the normal
+  /// [N] On the tissue, without shear.
+  Eigen::Vector3d pressure() const { return pressing_ * push_; }
   const Eigen::Vector3d& force() const { return force_; }    ///< [N] on the tissue
   const Eigen::Vector3d& at() const { return at_; }          ///< [m] world: where it acts on the tool
   const Eigen::Vector3d& normal() const { return normal_; }  ///< unit, into the tissue
@@ -171,11 +173,11 @@ class Patch {
   int local(int node);
   const Foot& foot(int cell) const { return feet_[grid_.foot(cell)]; }
   bool laid(int cell) const { return std::isfinite(cells_[cell].gap); }
-  /// [m] Along the normal, per node of nodes_: by `moved` and by shear.
-  using Rise = std::array<double, kMaxNodes>;
-  Rise rise_of_nodes(std::span<const Eigen::Vector3d> moved) const;
-  double rise(const Foot& foot, const Rise& of_nodes) const;
-  double gap(int cell, const Step& step, const Rise& of_nodes) const;
+  /// Into the tissue, 1 along the normal: how a pressure at a foot pushes, and along which it is met.
+  Eigen::Vector3d direction(int foot) const;
+  /// [m] By which the tissue at a foot is out of the way of what presses there, its nodes being moved, and by shear.
+  double rise(int foot, std::span<const Eigen::Vector3d> moved) const;
+  double gap(int cell, const Step& step) const;
   Eigen::Vector3d on_axis(const Segment& axis, double along) const;
   double middle_of_pressure() const;
   void find_shares(OfCells& shares) const;
@@ -210,21 +212,22 @@ class Patch {
   Eigen::Vector3d place_of_force() const;
   void fill_near_field(const NearField& near_field);
   void fill_normal();
-  void fill_feet();
+  void fill_feet(const NodeBlocks& nodes, std::span<const int> place, int places);
   void fill_cell(int q);
   void keep_positive();
   bool is_positive();
   void list_laid();
   void raise_eigenvalues();
   void add_nodes_give(std::span<const NodeGive> give);
-  void fill_at_foot(const Foot& foot, const std::vector<double>& between_nodes);
-  double at_foot(const Foot& foot) const;
   void settle_pressures();
   bool solve_active();
-  void lift_nodes(const Ground& ground, std::span<const NodeGive> give);
+  void lift_cells(const Ground& ground, std::span<const NodeGive> give);
+  void lift_nodes(std::span<const NodeGive> give);
   void bound_lift();
   double lift_at(const Foot& foot) const;
   void sum_pressures();
+  double share_leaning() const;
+  double give_aside() const;
   Eigen::Matrix3d shared_near_field(std::span<const double> share) const;
   Eigen::Matrix2d compliance_to_shear(const Eigen::Matrix<double, 3, 2>& plane, std::span<const double> share) const;
   void shear(const Ground& ground, const Drag& drag);
@@ -239,14 +242,18 @@ class Patch {
   Eigen::Vector3d bent_ = Eigen::Vector3d::Zero();     ///< [m] the tissue's shear under the patch
   Eigen::Vector3d resumed_ = Eigen::Vector3d::Zero();  ///< [N] not zero: the shear is to begin with its part
   Eigen::Vector2d slip_ = Eigen::Vector2d::Zero();     ///< [m] of the tip over the tissue, within the step
+  Eigen::Vector3d shear_ = Eigen::Vector3d::Zero();    ///< [N] on the tissue
   Eigen::Vector3d sheared_ = Eigen::Vector3d::Zero();  ///< [m] that the step's own shear bends the tissue
   std::optional<PatchMemory> memory_;
   bool sticks_ = true;
   Eigen::Matrix2d sheared_give_ = Eigen::Matrix2d::Zero();  ///< [m/N] along across_ and up_
-  std::vector<double> nodes_give_;                          ///< [m/N] within a step along the normal, between nodes_
-  std::vector<double> lifted_;                              ///< [m] along the normal by shear, per node of nodes_
+  NodeBlocks nodes_give_;                                   ///< within a step, between nodes_
+  std::vector<double> lifted_, lift_;  ///< [m] along the normal by shear, per node of nodes_ and per cell
   bool settled_ = true;
   double pressing_ = 0, depth_ = 0;
+  double leans_ = 0;                                 ///< [1] share of the ball's own lean by which pressures lean
+  double aside_ = 0;                                 ///< [m/N] by which a sphere gives way sideways
+  Eigen::Vector3d push_ = Eigen::Vector3d::UnitZ();  ///< along which they push in all, 1 along the normal
   double lost_ = 0;
   std::span<int> near_;  ///< triangles, of lay() alone
   PatchKernel kernel_;
@@ -261,15 +268,14 @@ class Patch {
   std::vector<unsigned char> active_;
   std::vector<double> wanted_, pressure_force_, compliance_, factor_, right_, floor_;
   std::vector<int> rows_;
-  NodeBlocks near_field_;                    ///< K between nodes_, each at a place of its own
-  std::vector<int> known_, place_;           ///< the node at each place, -1: none; the place of each of nodes_
-  std::array<double, kMaxNodes> at_places_;  ///< along the normal, per place: [m/N] of K, [m] of a shear
-  std::vector<double> k_;                    ///< [m/N] K along the normal, max_nodes_ a row
-  std::array<double, kMaxNodes> at_nodes_;   ///< [m/N] along the normal, of a force on one foot
+  NodeBlocks near_field_;                            ///< K between nodes_, each at a place of its own
+  std::vector<int> known_, place_;                   ///< the node at each place, -1: none; the place of each of nodes_
+  std::array<double, kMaxNodes> at_places_;          ///< [m] along the normal, per place, of a shear
+  std::array<std::vector<double>, 3> moved_places_;  ///< [m/N] likewise, by coordinate, of a force on one foot
+  std::vector<Eigen::Vector3d> direction_;           ///< per foot, of what presses there (direction())
   std::vector<PatchForce> forces_;
-  int loaded_ = 0;                    ///< how many of them
-  std::vector<double> k_feet_;        ///< [m/N] K between feet, along the normal
-  std::vector<double> foot_to_node_;  ///< [m/N] likewise from a foot to a node: one entry a foot, row by row of nodes
+  int loaded_ = 0;              ///< how many of them
+  std::vector<double> k_feet_;  ///< [m/N] between feet, of K or of what the nodes do in a step
 };
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "common/contact/patch/patch.hpp"
@@ -47,35 +48,36 @@ void Patch::fill_near_field(const NearField& near_field) {
 
 // The compliance between squares along the normal [m/N].
 void Patch::fill_normal() {
-  fill_feet();
+  for (int i = 0; i < grid_.feet(); ++i) direction_[i] = direction(i);
+  fill_feet(near_field_, place_, static_cast<int>(known_.size()));
   list_laid();
   const int n = grid_.size();
+  aside_ = give_aside();
   for (const int q : rows_) fill_cell(q);
   // A cell of which little lies over tissue gives little force: at an edge it comes and goes by and by.
   for (const int p : rows_) compliance_[p * n + p] += (1 / cells_[p].cover - 1) * kernel_.own();
 }
 
-// K between feet.
-void Patch::fill_feet() {
-  const int count = static_cast<int>(nodes_.size()), feet = grid_.feet();
-  for (int j = 0; j < count; ++j) {
-    double* const row = &k_[j * max_nodes_];
-    near_field_.along(normal_, normal_, place_[j], static_cast<int>(known_.size()), at_places_.data());
-    for (int i = j; i < count; ++i) k_[i * max_nodes_ + j] = row[i] = at_places_[place_[i]];
-  }
-  for (int a = 0; a < feet; ++a) {
-    if (!feet_[a].stands()) continue;
-    fill_at_foot(feet_[a], k_);
-    for (int i = 0; i < count; ++i) foot_to_node_[i * feet + a] = at_nodes_[i];
-  }
+// [m/N] What forces at feet do to feet, each along its own direction, by what nodes do to nodes.
+void Patch::fill_feet(const NodeBlocks& nodes, std::span<const int> place, int places) {
+  const int feet = grid_.feet();
+  auto& [x, y, z] = moved_places_;
   for (int b = 0; b < feet; ++b) {
-    const Foot& f = feet_[b];
-    if (!f.stands()) continue;
-    double* const row = &k_feet_[b * feet];
-    const double *const n0 = &foot_to_node_[f.local[0] * feet], *const n1 = &foot_to_node_[f.local[1] * feet],
-                        *const n2 = &foot_to_node_[f.local[2] * feet];
-    for (int a = b; a < feet; ++a) row[a] = f.weights[0] * n0[a] + f.weights[1] * n1[a] + f.weights[2] * n2[a];
-    for (int a = b + 1; a < feet; ++a) k_feet_[a * feet + b] = row[a];
+    const Foot& from = feet_[b];
+    if (!from.stands()) continue;
+    for (std::vector<double>* moved : {&x, &y, &z}) std::fill_n(moved->begin(), places, 0.0);
+    for (int v = 0; v < 3; ++v)
+      nodes.add_moved(from.weights[v] * direction_[b], place[from.local[v]], places, x.data(), y.data(), z.data());
+    for (int a = b; a < feet; ++a) {
+      const Foot& f = feet_[a];
+      if (!f.stands()) continue;
+      double sum = 0;
+      for (int v = 0; v < 3; ++v) {
+        const int i = place[f.local[v]];
+        sum += f.weights[v] * (direction_[a].x() * x[i] + direction_[a].y() * y[i] + direction_[a].z() * z[i]);
+      }
+      k_feet_[b * feet + a] = k_feet_[a * feet + b] = sum;
+    }
   }
 }
 
@@ -91,6 +93,9 @@ void Patch::fill_cell(int q) {
     else
       for (int i = 0; i < count; ++i) row[begin + i] = pressed[i] + at_feet[begin + i];
   }
+  if (grid_.strip()) return;
+  kernel_.add_leaning(q, leans_, row);
+  for (int p = 0; p < grid_.size(); ++p) row[p] += aside_ * leans_ * leans_ * grid_.lean(p).dot(grid_.lean(q));
 }
 
 // Where the nodes lie closer than the squares, or are softer than the half-space under forces on single ones, they know
@@ -136,32 +141,14 @@ void Patch::raise_eigenvalues() {
 
 // What a step's forces do to the nodes, to all squares over them.
 void Patch::add_nodes_give(std::span<const NodeGive> give) {
-  std::ranges::fill(nodes_give_, 0.0);
-  for (const auto& [i, j, block] : give)
-    nodes_give_[i * max_nodes_ + j] = nodes_give_[j * max_nodes_ + i] = normal_.dot(block * normal_);
-  const int n = grid_.size();
-  for (const int p : rows_) {
-    fill_at_foot(foot(p), nodes_give_);
-    for (const int q : rows_) {
-      if (q > p) break;
-      const double sum = at_foot(foot(q));
-      compliance_[p * n + q] += sum;
-      if (q < p) compliance_[q * n + p] += sum;
-    }
-  }
-}
-
-// What a force on a foot does to each node, by what it does from node to node.
-void Patch::fill_at_foot(const Foot& f, const std::vector<double>& between_nodes) {
-  const double* const row[] = {&between_nodes[f.local[0] * max_nodes_], &between_nodes[f.local[1] * max_nodes_],
-                               &between_nodes[f.local[2] * max_nodes_]};
-  for (std::size_t i = 0; i < nodes_.size(); ++i)
-    at_nodes_[i] = f.weights[0] * row[0][i] + f.weights[1] * row[1][i] + f.weights[2] * row[2][i];
-}
-
-double Patch::at_foot(const Foot& f) const {
-  return f.weights[0] * at_nodes_[f.local[0]] + f.weights[1] * at_nodes_[f.local[1]] +
-         f.weights[2] * at_nodes_[f.local[2]];
+  const int count = static_cast<int>(nodes_.size()), n = grid_.size();
+  std::array<int, kMaxNodes> same;
+  std::iota(same.begin(), same.begin() + count, 0);
+  nodes_give_.clear(count);
+  for (const auto& [i, j, block] : give) nodes_give_.set(i, j, block);
+  fill_feet(nodes_give_, std::span(same).first(count), count);
+  for (const int p : rows_)
+    for (const int q : rows_) compliance_[p * n + q] += k_feet_[grid_.foot(p) * grid_.feet() + grid_.foot(q)];
 }
 
 // [m/N] K between a force that the nodes share and what they all do, in such shares.

@@ -33,6 +33,7 @@ PatchGrid::PatchGrid(double radius, double length, const HalfSpace& half_space, 
       cells_.push_back({i, j});
       middle_.emplace_back(edge_ * (i - 0.5 * (columns_ - 1)), across(j));
       rise_.push_back(std::sqrt(radius * radius - beside * beside));
+      lean_.push_back(strip() ? Eigen::Vector2d(0, 0) : Eigen::Vector2d(middle_.back() / rise_.back()));
     }
   }
   first_.push_back(size());
@@ -43,9 +44,18 @@ PatchGrid::PatchGrid(double radius, double length, const HalfSpace& half_space, 
 PatchKernel::PatchKernel(const PatchGrid& grid)
     : grid_(grid),
       corners_((grid.columns() + 1) * (grid.rows() + 1)),
+      crossed_corners_(corners_.size()),
       pressed_(grid.columns() * (2 * grid.rows() - 1)),
-      sheared_(grid.columns() * grid.rows()) {
+      sheared_(grid.columns() * grid.rows()),
+      crossed_(sheared_.size()),
+      leaning_(grid.strip() ? 0 : grid.size() * grid.size()),
+      across_(leaning_.size()) {
   lay(grid.edge());
+}
+
+void PatchKernel::add_leaning(int p, double leans, double* row) const {
+  const double *const leaning = &leaning_[p * grid_.size()], *const across = &across_[p * grid_.size()];
+  for (int q = 0; q < grid_.size(); ++q) row[q] += leans * (leans * leaning[q] + across[q]);
 }
 
 void PatchKernel::lay(double length) {
@@ -66,6 +76,32 @@ void PatchKernel::lay(double length) {
       double* const pressed = &pressed_[i * (2 * rows - 1) + rows - 1];
       pressed[j] = pressed[-j] = per_force * grid_.half_space().pressed(sum);
       sheared_[i * rows + j] = per_force * grid_.half_space().sheared(sum);
+    }
+  if (!grid_.strip()) lay_leaning();
+}
+
+void PatchKernel::lay_crossed() {
+  if (crossed_length_ == length_) return;
+  crossed_length_ = length_;
+  const int columns = grid_.columns(), rows = grid_.rows();
+  for (int i = 0; i <= columns; ++i)
+    for (int j = 0; j <= rows; ++j)
+      crossed_corners_[i * (rows + 1) + j] =
+          grid_.half_space().crossed_corner((i - 0.5) * length_, (j - 0.5) * grid_.edge()) / (length_ * grid_.edge());
+  for (int i = 0; i < columns; ++i)
+    for (int j = 0; j < rows; ++j) {
+      const Eigen::Vector2d *low = &crossed_corners_[i * (rows + 1) + j], *high = low + rows + 1;
+      crossed_[i * rows + j] = high[1] - high[0] - low[1] + low[0];
+    }
+}
+
+void PatchKernel::lay_leaning() {
+  lay_crossed();
+  for (int p = 0; p < grid_.size(); ++p)
+    for (int q = 0; q < grid_.size(); ++q) {
+      const Eigen::Matrix2d k = sheared(p, q);
+      leaning_[p * grid_.size() + q] = grid_.lean(p).dot(k * grid_.lean(q));
+      across_[p * grid_.size() + q] = crossed(p, q).dot(grid_.lean(q) - grid_.lean(p));
     }
 }
 

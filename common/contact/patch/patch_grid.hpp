@@ -34,6 +34,9 @@ class PatchGrid {
   int row(int p) const { return cells_[p].row; }
   double across(int row) const { return edge_ * (row - 0.5 * (rows_ - 1)); }  ///< [m] of a row's middle
   double rise(int p) const { return rise_[p]; }  ///< [m] of the sphere, or the axis, over it
+  /// [1] By how much the sphere's outward normal leans along the two axes there, per length along the patch's own: a
+  /// pressure pushes the tissue aside too. A segment's flank pushes along the patch's normal alone.
+  const Eigen::Vector2d& lean(int p) const { return lean_[p]; }
   /// [m] about the patch's middle, of a sphere's square.
   const Eigen::Vector2d& middle(int p) const { return middle_[p]; }
   /// Cells stand column by column, those of one in rows that follow one another: the first of a column, and behind the
@@ -60,7 +63,7 @@ class PatchGrid {
   bool column_feet_;
   std::vector<Cell> cells_;
   std::vector<double> rise_;
-  std::vector<Eigen::Vector2d> middle_;
+  std::vector<Eigen::Vector2d> middle_, lean_;
   std::vector<int> first_;
   std::vector<int> ways_;
 };
@@ -77,6 +80,15 @@ class PatchKernel {
   const double* pressed(int columns_away, int row) const {
     return &pressed_[columns_away * (2 * grid_.rows() - 1) + grid_.rows() - 1 - row];
   }
+  /// Adds what leaning forces do beyond pressed(), between cell p and each cell [m/N], where they lean by a
+  /// share of their own. Not of a segment.
+  void add_leaning(int p, double leans, double* row) const;
+  /// [m/N] At cell p into the surface, by shear on cell q. After lay_crossed().
+  Eigen::Vector2d crossed(int p, int q) const {
+    const Eigen::Vector2d& k = crossed_[grid_.ways_from(p)[q]];
+    return {grid_.column(p) < grid_.column(q) ? -k.x() : k.x(), grid_.row(p) < grid_.row(q) ? -k.y() : k.y()};
+  }
+  void lay_crossed();                            ///< for the cells as they are laid
   Eigen::Matrix2d sheared(int p, int q) const {  ///< [m/N]
     Eigen::Matrix2d k = sheared_[grid_.ways_from(p)[q]];
     if ((grid_.column(p) < grid_.column(q)) != (grid_.row(p) < grid_.row(q))) k(0, 1) = k(1, 0) = -k(0, 1);
@@ -84,11 +96,16 @@ class PatchKernel {
   }
 
  private:
+  void lay_leaning();
+
   const PatchGrid& grid_;
-  double length_ = 0;
+  double length_ = 0, crossed_length_ = 0;
   std::vector<HalfSpace::Corner> corners_;
+  std::vector<Eigen::Vector2d> crossed_corners_;
   std::vector<double> pressed_;           ///< by the columns between them, and by the rows from - to +
   std::vector<Eigen::Matrix2d> sheared_;  ///< by the way between them
+  std::vector<Eigen::Vector2d> crossed_;  ///< likewise
+  std::vector<double> leaning_, across_;  ///< [m/N] row by row of cells, by the square of what they lean, and by that
 };
 
 /// One grid for each shape, on one material.

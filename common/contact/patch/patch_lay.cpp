@@ -1,6 +1,7 @@
 // How a patch is laid on the surface under its sphere.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "common/contact/patch/overlap_normal.hpp"
@@ -14,6 +15,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+// Radii deep, up to which pressures act along one normal, as where they lie in less than two squares' width there is
+// none to lean by; and from which on they lean as the ball does.
+constexpr double kUpright = 1 / 16.0, kLeaning = 1 / 4.0;
 constexpr double kLookAround = 1.5;  // radii about the sphere's middle, and as much more as it is deep,
 constexpr double kDeepest = 4;       // up to so many radii; about a deeper one, along all its way out
 constexpr int kTurnsToPassed = 40;   // at most, of the normal towards what the sphere has passed, where it comes anew
@@ -54,12 +58,23 @@ std::span<const int> Patch::lay(const Ground& ground, const Eigen::Isometry3d& b
   double depth = -std::numeric_limits<double>::infinity();
   for (const Cell& cell : cells_) depth = std::max(depth, cell.gap);
   depth_ = std::max(depth, 0.0);
+  leans_ = share_leaning();
+  push_ = normal_;
   at_ = place_of_force();
   lost_ = 0;
   for (int p = 0; p < grid_.size() && touches(); ++p)
     if (!laid(p)) lost_ += pressure_force_[p] / pressing_;
   if (nodes_.empty() || depth <= -above) lift();
   return nodes_;
+}
+
+// By the depth at which a sphere has as much volume below a plane as this one has in tissue.
+double Patch::share_leaning() const {
+  double heights = 0;  // [m]
+  for (const Cell& cell : cells_) heights += cell.cover * std::max(cell.gap, 0.0);
+  const double deep = grid_.edge() / grid_.radius() * std::sqrt(heights / (std::numbers::pi * grid_.radius()));
+  const double s = std::clamp((deep - kUpright) / (kLeaning - kUpright), 0.0, 1.0);
+  return s * s * (3 - 2 * s);
 }
 
 std::span<int> Patch::near(const SmoothSurface& surface, const Segment& axis) const {

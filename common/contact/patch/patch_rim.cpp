@@ -1,6 +1,7 @@
 // How much of a sphere's squares lies over tissue, where that ends below them.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/contact/patch/patch.hpp"
 #include "common/geometry/piece_within.hpp"
@@ -13,6 +14,10 @@ using Eigen::Vector3d;
 
 constexpr double kWhole = 1 - 1e-9;  // of a square: what is missing is rounding
 constexpr double kFaces = 0.4;       // cosine between a facet's normal and the patch's, from which it counts in full
+constexpr double kAside =
+    10;  // of a square's own compliance; with 1 faces at angles bend a column by a quarter too much
+constexpr double kLeastSunk = 0.1;  // of the radius: so deep at least a sphere is looked at
+constexpr double kMostPast = 0.5;   // of a sphere, past the tissue: from here on it does not give way aside
 
 std::array<Vector2d, 3> flattened(const std::array<Vector3d, 3>& t) {
   return {t[0].head<2>(), t[1].head<2>(), t[2].head<2>()};
@@ -73,6 +78,23 @@ int Patch::find_parted(const Ground& ground, std::array<int, kMaxCells>& parted)
   for (int p = 0; p < grid_.size(); ++p)
     if (is_parted[p]) parted[count++] = p;
   return count;
+}
+
+// [m/N] Within a face a sphere gives way to what pushes it aside: where the middle of its pressures lies is known less
+// well than the normal, which is of the whole surface below. Over a rim, where it reaches past the tissue, it does not.
+double Patch::give_aside() const {
+  if (rows_.empty() || grid_.strip()) return 0;
+  double deepest = -std::numeric_limits<double>::infinity();
+  for (const Cell& cell : cells_) deepest = std::max(deepest, cell.gap);
+  const double sunk = std::max(kLeastSunk * grid_.radius(), deepest), plane = grid_.radius() - sunk;
+  double all = 0, met = 0;  // [m] by which its squares are below a plane that it is sunk in, and below the tissue
+  for (int p = 0; p < grid_.size(); ++p) {
+    const double below = std::max(grid_.rise(p) - plane, 0.0);
+    all += below;
+    met += cells_[p].cover * std::clamp(cells_[p].gap + sunk - deepest, 0.0, below);
+  }
+  const double s = std::max(1 - (1 - met / all) / kMostPast, 0.0);
+  return kAside * kernel_.own() * s * s * (3 - 2 * s);
 }
 
 }  // namespace palpate

@@ -14,17 +14,30 @@ constexpr double kMaxLift = 0.15;  // within a face it is 0.12 at most; with 0.2
 
 }  // namespace
 
-// What the last step's shear does along the normal.
-void Patch::lift_nodes(const Ground& ground, std::span<const NodeGive> give) {
+// What the last step's shear does along the normal: the nodes, by K and by what they give way, and the half-space.
+void Patch::lift_cells(const Ground& ground, std::span<const NodeGive> give) {
+  std::ranges::fill(lift_, 0.0);
+  if (ground.friction == 0 || !touches()) return;
+  lift_nodes(give);
+  const Vector2d shear(across_.dot(shear_) / pressing_, up_.dot(shear_) / pressing_);
+  kernel_.lay_crossed();
+  for (int p = 0; p < grid_.size(); ++p) {
+    if (!laid(p)) continue;
+    lift_[p] = lift_at(foot(p));
+    for (int q = 0; q < grid_.size(); ++q)
+      if (pressure_force_[q] > 0) lift_[p] += pressure_force_[q] * kernel_.crossed(p, q).dot(shear);
+  }
+}
+
+void Patch::lift_nodes(std::span<const NodeGive> give) {
   lifted_.assign(nodes_.size(), 0.0);
-  if (ground.friction == 0) return;
   std::array<Vector3d, kMaxNodes> shear;
   shear.fill(Vector3d::Zero());
   for (const PatchForce& f : forces()) {
     const auto found = std::ranges::find(nodes_, f.node);
     if (found == nodes_.end()) continue;
     const auto j = found - nodes_.begin();
-    shear[j] = f.force - f.force.dot(normal_) * normal_;
+    shear[j] = f.force.dot(normal_) / pressing_ * shear_;
     near_field_.along(normal_, shear[j], place_[j], static_cast<int>(known_.size()), at_places_.data());
     for (std::size_t i = 0; i < nodes_.size(); ++i) lifted_[i] += at_places_[place_[i]];
   }
@@ -38,7 +51,7 @@ void Patch::lift_nodes(const Ground& ground, std::span<const NodeGive> give) {
 // force presses it in. Pressures see the shear, the shear does not see them: such a contact would put out work. What is
 // lifted, in the mean over the pressures, is held to a share of what the same force gives way by along the normal.
 void Patch::bound_lift() {
-  const double shear = (force_ - force_.dot(normal_) * normal_).norm();
+  const double shear = shear_.norm();
   if (!(pressing_ > 0) || shear == 0) return;
   std::array<int, kMaxCells> pressed;
   int count = 0;
@@ -47,13 +60,13 @@ void Patch::bound_lift() {
   double give = 0, squares = 0;  // [m N], [N m^2]
   for (const int p : std::span(pressed).first(count)) {
     const double f = pressure_force_[p];
-    squares += f * std::pow(lift_at(foot(p)), 2);
+    squares += f * std::pow(lift_[p], 2);
     for (const int q : std::span(pressed).first(count))
       give += f * pressure_force_[q] * compliance_[p * grid_.size() + q];
   }
   const double lift = std::sqrt(squares / pressing_), most = kMaxLift * give * shear / (pressing_ * pressing_);
   if (lift <= most) return;
-  for (double& l : lifted_) l *= most / lift;
+  for (double& l : lift_) l *= most / lift;
 }
 
 double Patch::lift_at(const Foot& f) const {
@@ -72,14 +85,20 @@ void Patch::shear(const Ground& ground, const Drag& drag) {
     bent_.setZero();
     resumed_.setZero();
     force_.setZero();
+    shear_.setZero();
     return;
   }
   const int n = grid_.size(), count = static_cast<int>(nodes_.size());
   std::array<double, kMaxNodes> share{};
+  std::array<Vector3d, kMaxNodes> pressed;  // [N] by pressures
+  pressed.fill(Vector3d::Zero());
   for (int p = 0; p < n; ++p)
-    for (int v = 0; v < 3 && pressure_force_[p] > 0; ++v)
-      share[foot(p).local[v]] += foot(p).weights[v] * pressure_force_[p] / pressing_;
-  Vector3d shear = Vector3d::Zero();
+    for (int v = 0; v < 3 && pressure_force_[p] > 0; ++v) {
+      const double force = foot(p).weights[v] * pressure_force_[p];
+      share[foot(p).local[v]] += force / pressing_;
+      pressed[foot(p).local[v]] += force * direction_[grid_.foot(p)];
+    }
+  shear_.setZero();
   if (ground.friction > 0) {
     Eigen::Matrix<double, 3, 2> plane;
     plane << across_, up_;
@@ -94,7 +113,8 @@ void Patch::shear(const Ground& ground, const Drag& drag) {
       if (share[i] == 0 || share[j] == 0) continue;
       const Eigen::Matrix3d both = i == j ? block : Eigen::Matrix3d(block + block.transpose());
       given += share[i] * share[j] * plane.transpose() * both * plane;
-      bent -= share[i] * share[j] * pressing_ * plane.transpose() * both * normal_;
+      bent -= share[i] * plane.transpose() * block * pressed[j];
+      if (i != j) bent -= share[j] * plane.transpose() * block.transpose() * pressed[i];
     }
     Vector2d force = (c + given).inverse() * bent;
     const double most = ground.friction * pressing_, size = force.norm();
@@ -104,11 +124,11 @@ void Patch::shear(const Ground& ground, const Drag& drag) {
     sheared_ = bent_ = plane * bent;
     sheared_give_ = c;
     if (memory_) bent_ += past - past.dot(normal_) * normal_;
-    shear = plane * force;
+    shear_ = plane * force;
   }
-  force_ = pressing_ * normal_ + shear;
+  force_ = pressure() + shear_;
   for (int i = 0; i < count; ++i)
-    if (share[i] != 0) forces_[loaded_++] = {nodes_[i], share[i] * force_};
+    if (share[i] != 0) forces_[loaded_++] = {nodes_[i], pressed[i] + share[i] * shear_};
 }
 
 // What of its way the tip has not taken the tissue along.

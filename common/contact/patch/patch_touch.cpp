@@ -124,7 +124,7 @@ bool PatchTouch::has(int tool, int part) const {
 Vector3d PatchTouch::pressing(int tool) const {
   Vector3d sum = Vector3d::Zero();
   for (const Part& p : parts_)
-    if (p.tool == tool && p.patch.touches()) sum += p.patch.pressing() * p.patch.normal();
+    if (p.tool == tool && p.patch.touches()) sum += p.patch.pressure();
   return sum;
 }
 

@@ -21,7 +21,7 @@ constexpr double kAbout = 3;  // radii, or longest edges, about a patch over whi
 // swing would feed it.
 constexpr double kSlackWay = 0.2, kSlackTurn = 0.1;
 constexpr double kSlowsBelow = 0.001, kSlowest = 0.1;  // [m], [1]: of what is led out
-constexpr double kResolved = 4;                        // edges over which linear elements know the true compliance
+constexpr double kResolved = 5;                        // edges over which linear elements know the true compliance
 
 std::array<int, 3> ascending(std::array<int, 3> nodes) {
   std::ranges::sort(nodes);
