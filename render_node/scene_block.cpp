@@ -1,8 +1,8 @@
 #include "render_node/scene_block.hpp"
 
-#include <cmath>
-#include <numbers>
-#include <stdexcept>
+#include <algorithm>
+
+#include "render_node/camera_axes.hpp"
 
 namespace palpate {
 namespace {
@@ -54,12 +54,7 @@ SceneBlock::Tool tool_block(const InstrumentView& tool, const Vector3d& light) {
 SceneBlock scene_block(const Frame& frame, int width, int height) {
   const Camera& camera = frame.camera;
   const double reach = (camera.target - camera.eye).norm();
-  const Vector3d forward = (camera.target - camera.eye) / reach;
-  const Vector3d sideways = forward.cross(camera.up);
-  if (!(sideways.norm() > 1e-6 * camera.up.norm()))
-    throw std::runtime_error("the camera looks nowhere: check its eye, target and up");
-  const Vector3d right = sideways.normalized(), up = right.cross(forward);
-  const double half_height = std::tan(0.5 * camera.field_of_view * std::numbers::pi / 180);
+  const auto [right, up, forward, half_height] = axes_of(camera);
   const double half_width = half_height * width / height;
 
   SceneBlock block{};

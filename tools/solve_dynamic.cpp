@@ -67,7 +67,7 @@ class Frames {
 
 Scene scene_of(const DynamicArguments& arguments) {
   std::vector<SceneChange> changes = parse_changes(arguments.set);
-  const Scene scene = load_scene(arguments.scene, changes);
+  Scene scene = load_scene(arguments.scene, changes);
   if (arguments.precision.empty()) return scene;
   const std::string name = name_of(choose_body(scene, arguments.body));
   changes.push_back({fmt::format("body.{}.dynamic.precision", name), arguments.precision});

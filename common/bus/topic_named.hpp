@@ -11,7 +11,7 @@ namespace palpate {
 /// The topic of this name, or of this name after `palpate/`. Throws std::runtime_error that names all where there is
 /// none.
 inline std::string topic_named(const std::string& name) {
-  const std::string whole = name.find('/') == std::string::npos ? "palpate/" + name : name;
+  std::string whole = name.find('/') == std::string::npos ? "palpate/" + name : name;
   std::string all;
   bool known = false;
   topics::for_each([&](const auto& topic) {

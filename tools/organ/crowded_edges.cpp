@@ -72,7 +72,7 @@ std::vector<Sides> sheets_at(const TriangleMesh& mesh, Sides sides, bool outward
   for (std::size_t i = 1; i < sides.size(); ++i)
     if (sides[i].forward == sides[i - 1].forward) return {sides};
   // The normal of a forward one points to larger angles: material begins at a backward one.
-  if (sides[0].forward == outward) std::ranges::rotate(sides, sides.begin() + 1);
+  if (sides[0].forward == outward) std::rotate(sides.begin(), sides.begin() + 1, sides.end());
   std::vector<Sides> sheets;
   for (std::size_t i = 0; i < sides.size(); i += 2) sheets.push_back({sides[i], sides[i + 1]});
   return sheets;

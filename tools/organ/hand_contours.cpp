@@ -112,7 +112,9 @@ HandContours read_hand_contours(const std::filesystem::path& file, const GridSha
       throw std::runtime_error(fmt::format("{}:{}: {}", file.string(), number, error.what()));
     }
   if (contours.empty()) throw std::runtime_error(fmt::format("{}: no point stands in it", file.string()));
-  for (auto& [slice, points] : contours) {
+  for (auto& contour : contours) {
+    const int slice = contour.first;
+    auto& points = contour.second;
     if (points.size() > 1 && points.front() == points.back()) points.pop_back();
     of_file(fmt::format("{}:{}", file.string(), last_line[slice]), [&] { check_points(slice, points); });
     points = smooth_line(points);

@@ -42,7 +42,7 @@ MetaHeader read_meta_header(std::istream& in) {
   MetaHeader header;
   std::string line(kLongestLine, '\0');
   for (std::size_t n = 0; n < kMostLines && in.getline(line.data(), static_cast<std::streamsize>(line.size())); ++n) {
-    const std::string text = line.c_str();
+    const std::string text = line.substr(0, line.find('\0'));
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) continue;
     const std::string key = trimmed(text.substr(0, equals));

@@ -235,8 +235,9 @@ std::vector<MadeBody> make_bodies(const LabelVolume& volume, const LabelVoxels& 
   double area = 0;
   for (const Together& body : bodies) area += body.solid.measures.area;
   std::vector<MadeBody> made;
-  for (const auto& [together, solid] : bodies) {
-    const std::vector<NamedLabel> labels = named_labels(voxels, together);
+  for (const Together& body : bodies) {
+    const LabelSolid& solid = body.solid;
+    const std::vector<NamedLabel> labels = named_labels(voxels, body.labels);
     const auto make = [&] {
       const MeshFineness fineness = fineness_for(volume, solid, o, solid.measures.area / area, out);
       return make_body(volume, labels, solid, fineness, o);

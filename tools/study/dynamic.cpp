@@ -63,7 +63,7 @@ class Dynamic : public Method {
     add(own_ ? "scene" : "model", own_ ? "as it is" : model_.name, true, [](Body&) {});
     for (const auto& [name, element, turns] : kElements)
       if (model_.elements && (element != motion.element || turns != motion.corotational))
-        add("element", name, true, [element, turns](Body& body) {
+        add("element", name, true, [element = element, turns = turns](Body& body) {
           motion_of(body).element = element, motion_of(body).corotational = turns, motion_of(body).step = 0;
         });
     if (!own_ && solid_->quick()) return all;

@@ -64,7 +64,7 @@ double HertzDent::share(const Vector3d& place) const {
 // of as much as lies within the circle.
 Vector3d HertzDent::field(const Vector3d& place, const Vector3d& normal) const {
   const Vector3d n = common_normal(normal, outward);
-  if (n.isZero(0)) return n;
+  if (n.isZero(0)) return Vector3d::Zero();
   const Vector3d d = place - middle;
   const double r = d.norm(), nu = half_space.poisson;
   const auto [value, slope, half_mean] = potential(r, disc);

@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 constexpr double kWhole = 1 - 1e-9;  // of a square: what is missing is rounding
 constexpr double kFaces = 0.4;       // cosine between a facet's normal and the patch's, from which it counts in full
-constexpr double kAside =
-    10;  // of a square's own compliance; with 1 faces at angles bend a column by a quarter too much
+// Of a square's own compliance; with 1, faces at angles bend a column by a quarter too much.
+constexpr double kAside = 10;
 constexpr double kLeastSunk = 0.1;  // of the radius: so deep at least a sphere is looked at
 constexpr double kMostPast = 0.5;   // of a sphere, past the tissue: from here on it does not give way aside
 

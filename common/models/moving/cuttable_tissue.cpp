@@ -4,6 +4,7 @@
 #include <functional>
 #include <utility>
 
+#include "common/contact/tool_contacts.hpp"
 #include "common/geometry/triangle.hpp"
 
 namespace palpate {
