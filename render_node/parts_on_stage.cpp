@@ -13,8 +13,7 @@ std::array<int, 3> ascending(std::array<int, 3> face) {
 template <class T>
 void sort_once(std::vector<T>& all) {
   std::ranges::sort(all);
-  const auto twice = std::ranges::unique(all);
-  all.erase(twice.begin(), twice.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
 }
 
 std::vector<std::array<int, 2>> edges_of(std::span<const std::array<int, 3>> triangles) {

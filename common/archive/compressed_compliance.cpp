@@ -74,7 +74,7 @@ void CompressedCompliance::set_leaves(Layout& layout) {
     begin.insert(begin.end(), {b.row, b.row_end, b.column, b.column_end});
   begin.insert(begin.end(), {0, layout.tensors.touchable});
   std::ranges::sort(begin);
-  begin.erase(std::ranges::unique(begin).begin(), begin.end());
+  begin.erase(std::unique(begin.begin(), begin.end()), begin.end());
   require(begin.size() <= kMaxLeaves, "it has more clusters of nodes than can be");
   for (std::size_t l = 0; l + 1 < begin.size(); ++l) layout.leaf.resize(begin[l + 1], static_cast<int>(l));
 }

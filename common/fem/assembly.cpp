@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ranges>
 #include <stdexcept>
 
 #include "common/fem/nodal_patches.hpp"
@@ -86,8 +85,9 @@ void add_patch_forces(const NodalPatches& patches, const std::vector<Eigen::Vect
 constexpr double kMaxContrast = 1e10;  // [1] of Young's moduli: beyond it rounding in the stiff part hides the soft one
 
 void refuse_contrast(const MaterialField& field, const std::string& body) {
-  const auto of_element = [&](std::uint16_t m) { return field.materials[m].young; };
-  const auto [least, most] = std::ranges::minmax(field.of_element | std::views::transform(of_element));
+  const auto young = [&](std::uint16_t m) { return field.materials[m].young; };
+  const auto [soft, stiff] = std::ranges::minmax(field.of_element, {}, young);
+  const double least = young(soft), most = young(stiff);
   if (most > kMaxContrast * least)
     throw std::runtime_error(
         fmt::format("body '{}': its materials have Young's moduli from {:.3g} to {:.3g} Pa, a contrast of {:.3g}: "

@@ -27,7 +27,7 @@ LinearContact::Space linear_space(const StaticProblem& problem) {
   own.setIdentity();
   NodeGraph graph = node_graph(problem.mesh, problem.materials);
   SparseMatrix stiffness = assemble_stiffness(problem.mesh, problem.materials, problem.dofs, graph);
-  return {problem.mesh.nodes, problem.dofs, std::move(own), std::move(graph), std::move(stiffness)};
+  return {problem.mesh.nodes, problem.dofs, own, std::move(graph), stiffness};
 }
 
 LinearContact::Space quadratic_space(const StaticProblem& problem) {
@@ -36,7 +36,7 @@ LinearContact::Space quadratic_space(const StaticProblem& problem) {
   NodeGraph graph = fine_graph(fine.space, nullptr);
   SparseMatrix stiffness = assemble_stiffness(fine.space, fine.materials, nullptr, fine.dofs, graph);
   return {fine.space.nodes, std::move(fine.dofs), hat_tractions(fine.space, problem.mesh, SurfaceWeight::hat),
-          std::move(graph), std::move(stiffness)};
+          std::move(graph), stiffness};
 }
 
 LinearContact::Space make_space(const StaticProblem& problem, FiniteElement element) {
@@ -107,7 +107,7 @@ VectorXd solve_forces(const MatrixXd& along, const VectorXd& wanted, double tole
 
 }  // namespace
 
-LinearContact::LinearContact(StaticProblem problem, std::span<const Vector3d> centres, double reach,
+LinearContact::LinearContact(const StaticProblem& problem, std::span<const Vector3d> centres, double reach,
                              FiniteElement element)
     : LinearContact(problem, make_space(problem, element), centres, reach) {}
 

@@ -17,7 +17,7 @@ namespace palpate {
 class LinearContact {
  public:
   /// Nodes of the surface within `reach` [m] of one of `centres` may touch the ball.
-  LinearContact(StaticProblem problem, std::span<const Eigen::Vector3d> centres, double reach,
+  LinearContact(const StaticProblem& problem, std::span<const Eigen::Vector3d> centres, double reach,
                 FiniteElement element = FiniteElement::p1);
 
   /// Displacements are of the mesh's nodes, and with quadratic elements then of the edges' midpoints. Throws

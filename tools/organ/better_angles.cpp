@@ -75,7 +75,8 @@ class Bettering {
       const Vector3d from = mesh_.nodes[n];
       Vector3d place = from;
       for (int i = 0; i < 27; ++i) {
-        Vector3d way(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1;
+        Vector3d way(x, y, z);
         if (freedom_[n] == Freedom::plane) way -= way.dot(normals_[n]) * normals_[n];
         mesh_.nodes[n] = from + step * way.stableNormalized();
         if ((mesh_.nodes[n] - start_[n]).norm() > reach) continue;

@@ -125,7 +125,7 @@ void cut_at_middles(TriangleMesh& mesh, const std::map<int, int>& middle) {
       first = around.size();
       around.push_back(middle.at(corner));
     }
-    std::ranges::rotate(around, around.begin() + static_cast<std::ptrdiff_t>(first));
+    std::rotate(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(first), around.end());
     mesh.triangles[t] = {around[0], around[1], around[2]};
     for (std::size_t c = 3; c < around.size(); ++c) mesh.triangles.push_back({around[0], around[c - 1], around[c]});
   }
