@@ -12,7 +12,7 @@ class LogTopicWriter final : public Writer<M> {
       : log_(log), clock_(clock), topic_(topic) {}
 
   bool write(const M& message) override {
-    M sent = message;
+    M sent = message;  // NOLINT(performance-unnecessary-copy-initialization): changed where it has these times
     const std::int64_t receive_ns = clock_.start_ns + clock_.now_ns;
     if constexpr (requires { sent.sense_ns; }) sent.sense_ns += clock_.start_ns;
     if constexpr (requires { sent.publish_ns; }) sent.publish_ns = receive_ns;

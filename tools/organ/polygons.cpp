@@ -8,7 +8,7 @@ namespace {
 
 /// Corners of a polygon in its own plane, seen so that it goes round to the left.
 std::vector<Eigen::Vector2d> flattened(const std::vector<Eigen::Vector3d>& points, const std::vector<int>& polygon) {
-  const Eigen::Vector3d from = points[polygon[0]];
+  const Eigen::Vector3d& from = points[polygon[0]];
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (std::size_t c = 2; c < polygon.size(); ++c)
     normal += (points[polygon[c - 1]] - from).cross(points[polygon[c]] - from);
